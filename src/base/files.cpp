@@ -1,0 +1,193 @@
+#include "base/files.h"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace packmerger {
+namespace {
+
+std::string reason() { return std::strerror(errno); }
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_;
+};
+
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
+  throw Error(Fault::kCannotWrite, "Cannot write " + path.string() + ": " + why,
+              "Check that the folder exists, may be written to and has free space.");
+}
+
+void sync_path(const fs::path& path, int flags) {
+  Descriptor file(::open(path.c_str(), flags | O_CLOEXEC));
+  if (file.get() < 0 || ::fsync(file.get()) != 0) cannot_write(path, reason());
+}
+
+// Calls take(bytes, count) for each block of the file.
+template <typename Take>
+void read_blocks(const fs::path& path, const Take& take) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    const bool missing = errno == ENOENT || errno == ENOTDIR;
+    throw Error(missing ? Fault::kNoInput : Fault::kIo,
+                "Cannot open " + path.string() + ": " + reason(),
+                "Check the name and that you may read it.");
+  }
+  std::vector<char> block(1 << 20);
+  for (;;) {
+    const ssize_t count = ::read(file.get(), block.data(), block.size());
+    if (count == 0) return;
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0)
+      throw Error(Fault::kIo, "Cannot read " + path.string() + ": " + reason(),
+                  "Check the disk or the network share it is on.");
+    take(block.data(), static_cast<std::size_t>(count));
+  }
+}
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
+  }
+  void add(const char* bytes, std::size_t count) {
+    EVP_DigestUpdate(context_.get(), bytes, count);
+  }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned length = 0;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), &length);
+    static constexpr char kDigits[] = "0123456789abcdef";
+    std::string text;
+    for (unsigned i = 0; i < length; ++i) {
+      text += kDigits[digest[i] >> 4];
+      text += kDigits[digest[i] & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+fs::path make_folder(const fs::path& pattern) {
+  std::string name = pattern.string();
+  if (::mkdtemp(name.data()) == nullptr) cannot_write(pattern, reason());
+  return name;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::uint64_t max_bytes) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw Error(Fault::kNoInput, path.string() + " is a folder", "Name a file instead.");
+  const std::uint64_t size = fs::file_size(path, ignored);
+  const auto refuse = [&] {
+    throw Error(Fault::kBadInput,
+                path.string() + " is larger than " + std::to_string(max_bytes >> 20) + " MiB",
+                "Reduce the model, for example by decimating it, and try again.");
+  };
+  if (!ignored && size > max_bytes) refuse();
+  std::string bytes;
+  if (!ignored) bytes.reserve(size);
+  read_blocks(path, [&](const char* block, std::size_t count) {
+    if (bytes.size() + count > max_bytes) refuse();
+    bytes.append(block, count);
+  });
+  return bytes;
+}
+
+void write_file_whole(const fs::path& path, std::string_view bytes) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::string name = (folder / ("." + path.filename().string() + ".XXXXXX")).string();
+  Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
+  if (file.get() < 0) cannot_write(path, reason());
+  const auto fail = [&] {
+    const std::string why = reason();
+    ::unlink(name.c_str());
+    cannot_write(path, why);
+  };
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file.get(), bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail();
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  if (::fchmod(file.get(), 0644) != 0 || ::fsync(file.get()) != 0) fail();
+  if (::close(file.release()) != 0) fail();
+  if (::rename(name.c_str(), path.c_str()) != 0) fail();
+  sync_folder(folder);
+}
+
+void sync_folder(const fs::path& folder) { sync_path(folder, O_RDONLY | O_DIRECTORY); }
+
+void sync_tree(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) sync_path(entry.path(), O_RDONLY);
+    if (entry.is_directory()) sync_folder(entry.path());
+  }
+  sync_folder(folder);
+}
+
+std::string sha256_hex(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.hex();
+}
+
+std::string sha256_hex_of_file(const fs::path& path) {
+  Sha256 hash;
+  read_blocks(path, [&](const char* block, std::size_t count) { hash.add(block, count); });
+  return hash.hex();
+}
+
+TemporaryFolder::TemporaryFolder()
+    : path_(make_folder(fs::temp_directory_path() / "packmerger.XXXXXX")) {}
+
+TemporaryFolder TemporaryFolder::beside(const fs::path& target) {
+  const fs::path whole = fs::absolute(target).lexically_normal();
+  const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
+  return TemporaryFolder(
+      make_folder(clean.parent_path() / ("." + clean.filename().string() + ".XXXXXX")));
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+void TemporaryFolder::publish(const fs::path& target) {
+  const fs::path whole = fs::absolute(target).lexically_normal();
+  const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
+  sync_tree(path_);
+  ::chmod(path_.c_str(), 0755);
+  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, clean.c_str(), RENAME_NOREPLACE) != 0)
+    cannot_write(clean, reason());
+  path_.clear();
+  sync_folder(clean.parent_path());
+}
+
+}  // namespace packmerger

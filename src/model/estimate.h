@@ -1,0 +1,33 @@
+// What a way of printing costs, as job.json and the comparison show it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace packmerger {
+
+enum class EstimateSource { kModel, kSlicer };
+
+struct Estimate {
+  double time_s = 0;
+  double model_mm3 = 0;    // as deposited
+  double model_g = 0;
+  double support_mm3 = 0;  // V_s of docs/ESTIMATES, or what the slicer extrudes for support
+  double support_g = 0;
+  double cost = 0;         // money: material, machine hours, minutes of gluing
+  std::string currency;    // ISO 4217
+  int parts = 1;
+  int trays = 1;
+  double assembly_min = 0;
+  EstimateSource source = EstimateSource::kModel;
+};
+
+// Empty where it does not fit the printer.
+struct Comparison {
+  std::optional<Estimate> as_is;   // the model the way its file stands
+  std::optional<Estimate> solid;   // the best of six ways up
+  std::optional<Estimate> hollow;  // in one piece, the best of six ways up
+  std::optional<Estimate> packed;
+};
+
+}  // namespace packmerger
