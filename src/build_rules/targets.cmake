@@ -33,3 +33,17 @@ function(packmerger_program name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE packmerger_compile_options ${ARG_LINKS})
 endfunction()
+
+# packmerger_test(NAME SOURCES ... LINKS ... [TIMEOUT s] [LABELS ...]): a GoogleTest program, one ctest test a
+# TEST(). tests/ is on the include path.
+function(packmerger_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT" "SOURCES;LINKS;LABELS")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  packmerger_program(${name} SOURCES ${ARG_SOURCES} LINKS ${ARG_LINKS} GTest::gmock GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+    ENVIRONMENT "PACKMERGER_SOURCE=${PROJECT_SOURCE_DIR};PACKMERGER_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+endfunction()

@@ -153,9 +153,10 @@ std::vector<std::filesystem::path> profile_folders();
 // Error{kNoInput} when there is no such profile.
 Profile read_profile(std::string_view id_or_path);
 
-// Applies "key=value" as --set does, with the same checks as a profile. Keys are the TOML's, the
-// table's name and a dot before those inside tables ("fdm.start_s=60"); keys of [shape] and [pack]
-// may stand alone ("gap_mm=0"). Throws Error{kUsage}.
+// Applies "key=value" as --set does, with the same checks as a profile. Keys are the TOML's: those
+// of ShapeSettings and PackSettings stand at the top level ("gap_mm=0", "build_mm=100,100,300"),
+// those of the tables [polyjet], [fdm], [material], [cost], [slicer] and [link] carry the table's
+// name and a dot ("fdm.start_s=60"). Throws Error{kUsage}.
 void set_profile_key(Profile& profile, std::string_view assignment);
 
 // The whole profile with every key, as TOML that read_profile accepts.
