@@ -1,0 +1,118 @@
+// Drawing without a display or a graphics card (OSMesa): depth maps for the packer and lit colour
+// images for pictures. Nothing else in the project knows OpenGL.
+//
+// Same input, same pixels, on any number of threads. Every function throws Error{kInternal} when
+// the library cannot give a drawing surface.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "model/mesh.h"
+
+namespace packmerger {
+
+// ---- depth ---------------------------------------------------------------------------------
+
+// What a depth map holds where nothing was hit: below everything when looked at from above, above
+// everything from below, so that min and max need no special case.
+inline constexpr float kNothingBelow = -std::numeric_limits<float>::infinity();
+inline constexpr float kNothingAbove = std::numeric_limits<float>::infinity();
+
+// A lattice of vertical rays: ray (i, j) stands at (x_mm + i·step_mm, y_mm + j·step_mm).
+struct RayLattice {
+  double x_mm = 0;
+  double y_mm = 0;
+  double step_mm = 1;
+  int width = 0;   // rays along x, 1..8192
+  int height = 0;  // rays along y, 1..8192
+};
+
+// width × height heights in mm, x fastest: value (i, j) at [j·width + i].
+struct DepthMap {
+  int width = 0;
+  int height = 0;
+  std::vector<float> heights;
+};
+
+struct DepthTriangles {
+  std::vector<Eigen::Vector3f> points;                 // mm
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into points, in any turn
+};
+
+// Draws depth maps. Holds a drawing surface that grows as needed; make one per thread and keep it.
+// Orthographic projection along z, point samples at the rays, no culling of back faces. A height is
+// exact to about 1e-6 of the triangles' height range plus 1/256 of the step times the facet's slope.
+class DepthRenderer {
+ public:
+  DepthRenderer();
+  DepthRenderer(DepthRenderer&&) noexcept;
+  DepthRenderer& operator=(DepthRenderer&&) noexcept;
+  ~DepthRenderer();
+
+  // The highest point of the triangles on every ray, kNothingBelow where there is none.
+  DepthMap from_above(const DepthTriangles& triangles, const RayLattice& rays);
+  // The lowest point, kNothingAbove where there is none.
+  DepthMap from_below(const DepthTriangles& triangles, const RayLattice& rays);
+
+ private:
+  struct Surface;
+  std::unique_ptr<Surface> surface_;
+};
+
+// ---- colour --------------------------------------------------------------------------------
+
+struct Colour {
+  float red = 0.8F;  // 0..1, as they appear on screen (sRGB)
+  float green = 0.8F;
+  float blue = 0.8F;
+};
+
+struct SceneMesh {
+  const Mesh* mesh = nullptr;
+  Colour colour;
+  Pose pose = Pose::Identity();  // mesh → scene
+};
+
+struct SceneLine {
+  Vec3 a = Vec3::Zero();
+  Vec3 b = Vec3::Zero();
+  Colour colour;
+};
+
+// Lengths in mm; z points up.
+struct Scene {
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneLine> lines;
+  Colour background{1, 1, 1};
+  double line_width_px = 1.5;  // in pixels of the finished image
+};
+
+// A perspective camera.
+struct Camera {
+  Vec3 eye{0, -1, 1};
+  Vec3 target = Vec3::Zero();
+  Vec3 up = Vec3::UnitZ();
+  double field_of_view = radians(30);  // vertical, radians
+};
+
+// A camera that looks along `direction` at the whole of `box` in an image of the given aspect
+// (width over height), with a small margin around it.
+Camera camera_looking_at(const Box3& box, const Vec3& direction, double aspect);
+
+// Rows from top to bottom, RGBA, alpha 255.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+// Draws the scene lit from the camera's upper left and the sky, smooth across edges that turn less
+// than 40° and sharp at others, both sides of every facet, hidden parts removed, antialiased by
+// supersampling × supersampling samples a pixel. width, height: 1..4096; supersampling: 1..4.
+Image draw(const Scene& scene, const Camera& camera, int width, int height, int supersampling = 3);
+
+}  // namespace packmerger
