@@ -1,0 +1,43 @@
+// Reads a model file: STL (binary and ASCII), OBJ, PLY (ASCII and binary), OFF and core 3MF.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/files.h"
+#include "base/progress.h"
+#include "model/mesh.h"
+
+namespace packmerger {
+
+struct ModelFile {
+  TriangleSoup soup;      // the file's unit; mm where has_unit
+  bool has_unit = false;  // 3MF declares its unit and was converted; the other formats have none
+  std::string format;     // "stl", "obj", "ply", "off" or "3mf"
+};
+
+// The content decides the format where it can (a ZIP holding a 3D model part is 3MF; "ply" and
+// "OFF" as first words; 84 + 50·n bytes are a binary STL whatever the header says; "solid" with
+// facets is an ASCII STL), else the extension does.
+//
+// Faces with more than three corners are cut into a fan. Every triangle that is returned has
+// indices within points and every coordinate is finite; nothing else is promised: see repair().
+// 3MF: items, components and their transforms are applied, in mm; objects of type "support" and
+// "other" and items that are not to be printed are left out; models that refer to other parts of
+// the archive (the production extension's p:path) are refused.
+//
+// Nothing in the file is trusted: counts are checked against the bytes that are there before
+// memory is taken. Limits: 1 GiB a file, 2 GiB a 3MF's inflated model part, 30 million triangles
+// after polygons are cut and components are repeated, 64 levels of components. Memory stays below
+// 64 times the file's size (for 3MF, of the inflated part) plus the returned soup.
+//
+// Throws Error: kNoInput (no such file), kIo, kBadInput (unknown format, broken or truncated file,
+// no triangles, non-finite coordinates, above a limit), kInterrupted.
+ModelFile read_model(const fs::path& path, const Progress& progress);
+
+// The same for bytes in memory; extension with or without its dot, any case, may be empty.
+ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
+                           const Progress& progress);
+
+}  // namespace packmerger
