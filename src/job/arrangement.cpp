@@ -1,0 +1,39 @@
+#include "job/arrangement.h"
+
+#include "printers/support_volume.h"
+
+namespace packmerger {
+
+std::vector<Tray> trays_of(const Arrangement& arrangement) {
+  std::vector<Tray> trays(arrangement.trays);
+  for (const JobPart& part : arrangement.parts)
+    trays[part.tray - 1].parts.push_back(transformed(part.surface, part.pose));
+  return trays;
+}
+
+Assembly assembly_of(const Arrangement& arrangement) {
+  Assembly assembly;
+  assembly.parts = static_cast<int>(arrangement.parts.size());
+  assembly.joints = 0;
+  for (const JobPart& part : arrangement.parts)
+    assembly.joints += static_cast<int>(part.neighbours.size());
+  assembly.joints /= 2;  // each is told by both sides
+  return assembly;
+}
+
+TrayMeasure measure(const Tray& tray, const Profile& profile) {
+  TrayMeasure result;
+  Box3 box;
+  std::vector<const Mesh*> parts;
+  for (const Mesh& part : tray.parts) {
+    box.extend(bounding_box(part));
+    result.material_mm3 += volume_mm3(part);
+    parts.push_back(&part);
+  }
+  result.size_mm = {box.sizes().x(), box.sizes().y(), box.max().z()};
+  result.support_mm3 = support_volume_mm3(parts, radians(profile.support_angle_deg));
+  result.parts = static_cast<int>(parts.size());
+  return result;
+}
+
+}  // namespace packmerger

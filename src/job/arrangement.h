@@ -1,0 +1,27 @@
+// One way of printing the job: which parts stand where on which trays.
+#pragma once
+
+#include <vector>
+
+#include "model/job.h"
+#include "model/packing.h"
+#include "model/printer.h"
+#include "model/tray.h"
+
+namespace packmerger {
+
+struct Arrangement {
+  std::vector<JobPart> parts;      // ids 1, 2, … in order
+  std::vector<int> removal_order;  // ids
+  int trays = 1;
+};
+
+// The parts at their places, one Tray each, in order.
+std::vector<Tray> trays_of(const Arrangement& arrangement);
+
+Assembly assembly_of(const Arrangement& arrangement);
+
+// What the packer's objective sees, taken from the exact meshes.
+TrayMeasure measure(const Tray& tray, const Profile& profile);
+
+}  // namespace packmerger

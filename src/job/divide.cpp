@@ -1,0 +1,54 @@
+#include "job/divide.h"
+
+#include <utility>
+
+#include "shape/hollow.h"
+#include "shape/manifold_parts.h"
+#include "shape/premerge.h"
+#include "shape/segment.h"
+#include "shape/smooth_cuts.h"
+#include "shape/solidify.h"
+
+namespace packmerger {
+
+Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
+               Warnings& warnings, const Progress& progress) {
+  Solidified solid = solidify(surface, profile.shape, hollow_it, warnings, progress);
+  Divided divided;
+  divided.shell = std::move(solid.shell);
+  divided.tets = std::move(solid.tets);
+  divided.resample_tolerance_mm = solid.resample_tolerance_mm;
+
+  Segments clusters = segment(divided.tets, profile.shape, seed, progress);
+  make_manifold(divided.tets, clusters, progress);
+  divided.clusters = clusters.count;
+
+  const BuildVolume build{profile.build(), radians(profile.pack.rotation_step_deg)};
+  divided.segments = premerge(divided.tets, clusters, profile.shape, build, warnings, progress);
+
+  const CutRoughness roughness =
+      smooth_cuts(divided.tets, divided.segments, divided.shell.outer, profile.shape, progress);
+  divided.roughness_before = roughness.before_rad;
+  divided.roughness_after = roughness.after_rad;
+  return divided;
+}
+
+Divided keep_whole(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
+                   const Progress& progress) {
+  Divided whole;
+  if (hollow_it) {
+    whole.shell = hollow(surface, profile.shape, warnings, progress);
+  } else {
+    whole.shell.outer = surface;
+    whole.shell.volume_mm3 = volume_mm3(surface);
+  }
+  return whole;
+}
+
+Mesh shell_surface(const Shell& shell) {
+  std::vector<const Mesh*> surfaces{&shell.outer};
+  for (const Mesh& cavity : shell.cavities) surfaces.push_back(&cavity);
+  return united(surfaces);
+}
+
+}  // namespace packmerger

@@ -1,0 +1,39 @@
+// From a surface to segments ready to be packed: the paper's sections 3 to 5 in order.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "base/progress.h"
+#include "model/mesh.h"
+#include "model/printer.h"
+#include "model/segments.h"
+#include "model/shell.h"
+#include "model/tet_mesh.h"
+#include "model/warning.h"
+
+namespace packmerger {
+
+struct Divided {
+  Shell shell;
+  TetMesh tets;                  // empty when the model is kept whole
+  Segments segments;             // after pre-merging and smoothing
+  int clusters = 0;              // segments before pre-merging
+  double roughness_before = 0;   // radians: mean turning angle of the cut curves
+  double roughness_after = 0;
+  std::optional<double> resample_tolerance_mm;
+};
+
+// hollow_it: false keeps the model solid. Same surface, settings and seed: the same result on any
+// number of threads.
+Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
+               Warnings& warnings, const Progress& progress);
+
+// The model hollowed (or, with hollow_it false, as it is) and not divided.
+Divided keep_whole(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
+                   const Progress& progress);
+
+// The shell as one surface: outside and cavities.
+Mesh shell_surface(const Shell& shell);
+
+}  // namespace packmerger

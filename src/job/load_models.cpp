@@ -1,0 +1,68 @@
+#include "job/load_models.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "base/files.h"
+#include "shape/read_model.h"
+#include "shape/repair.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kSmallest = 1;    // mm
+constexpr double kLargest = 2000;  // mm
+
+double factor(const ModelFile& file, const Sizing& sizing) {
+  if (sizing.size_mm) {
+    Box3 box;
+    for (const Vec3& point : file.soup.points) box.extend(point);
+    return *sizing.size_mm / box.sizes().maxCoeff();
+  }
+  return sizing.scale * (file.has_unit ? 1 : sizing.unit_mm);
+}
+
+void warn_of_size(const std::string& name, const Mesh& surface, Warnings& warnings) {
+  const Vec3 size = bounding_box(surface).sizes();
+  const double longest = size.maxCoeff();
+  if (longest >= kSmallest && longest <= kLargest) return;
+  warnings.push_back({"suspicious_size",
+                      fmt::format("{} measures {:.4g} x {:.4g} x {:.4g} mm: check its unit, and use "
+                                  "--units, --scale or --size if that is wrong",
+                                  name, size.x(), size.y(), size.z())});
+}
+
+LoadedModel load_model(const std::filesystem::path& path, const Sizing& sizing, Warnings& warnings,
+                       const Progress& progress) {
+  progress.report("reading", 0);
+  ModelFile file = read_model(path, progress);
+  LoadedModel loaded;
+  loaded.input.file = path.filename().string();
+  loaded.input.sha256 = sha256_hex_of_file(path);
+  loaded.input.scale = factor(file, sizing);
+  if (!(std::isfinite(loaded.input.scale) && loaded.input.scale > 0))
+    throw Error(Fault::kBadInput, loaded.input.file + " has no extent, so it cannot be scaled",
+                "Export the model again and check that it is not empty.");
+  for (Vec3& point : file.soup.points) point *= loaded.input.scale;
+  progress.report("repairing", 0);
+  loaded.surface = std::make_shared<const Mesh>(repair(file.soup, warnings, progress));
+  warn_of_size(loaded.input.file, *loaded.surface, warnings);
+  return loaded;
+}
+
+}  // namespace
+
+std::vector<LoadedModel> load_models(const std::vector<std::filesystem::path>& paths,
+                                     const Sizing& sizing, Warnings& warnings,
+                                     const Progress& progress) {
+  std::map<std::filesystem::path, LoadedModel> seen;
+  std::vector<LoadedModel> models;
+  for (const std::filesystem::path& path : paths) {
+    if (!seen.contains(path)) seen.emplace(path, load_model(path, sizing, warnings, progress));
+    models.push_back(seen.at(path));
+  }
+  return models;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,34 @@
+// From files to closed surfaces in millimetres: the first step of prepare and compare.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "model/job.h"
+#include "model/mesh.h"
+#include "model/warning.h"
+
+namespace packmerger {
+
+// How a file's numbers become millimetres.
+struct Sizing {
+  double unit_mm = 1;             // for files that name no unit; 25.4 for inches
+  double scale = 1;               // on top of the unit
+  std::optional<double> size_mm;  // longest side; replaces unit_mm and scale
+};
+
+struct LoadedModel {
+  JobInput input;
+  std::shared_ptr<const Mesh> surface;  // closed, outward, mm; shared by copies of one file
+};
+
+// One entry per path, in order; a path named twice is read once. Adds warnings "repaired" and
+// "suspicious_size" (longest side under 1 mm or over 2 m). Throws what read_model and repair throw.
+std::vector<LoadedModel> load_models(const std::vector<std::filesystem::path>& paths,
+                                     const Sizing& sizing, Warnings& warnings,
+                                     const Progress& progress);
+
+}  // namespace packmerger

@@ -1,0 +1,157 @@
+#include "job/pack_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "pack/exact_gap.h"
+#include "pack/pack.h"
+#include "printers/packing_cost.h"
+#include "shape/adjacency.h"
+#include "shape/manifold_parts.h"
+#include "shape/part_surface.h"
+
+namespace packmerger {
+namespace {
+
+using Models = std::vector<std::shared_ptr<const Divided>>;
+
+// The first item of each model; items of a model are its segments in order, or the whole model.
+std::vector<int> first_items(const Models& models) {
+  std::vector<int> first{0};
+  for (const auto& model : models)
+    first.push_back(first.back() + (model->tets.count() > 0 ? model->segments.count : 1));
+  return first;
+}
+
+PackProblem problem_of(const Models& models, const Profile& profile, std::uint64_t seed,
+                       double budget_s) {
+  PackProblem problem;
+  for (int m = 0; m < static_cast<int>(models.size()); ++m) {
+    const Divided& model = *models[m];
+    if (model.tets.count() == 0) {
+      problem.items.push_back({shell_surface(model.shell), model.shell.volume_mm3, m});
+      continue;
+    }
+    const int first = static_cast<int>(problem.items.size());
+    for (SegmentSurface& segment : part_surfaces(model.tets, model.segments))
+      problem.items.push_back({std::move(segment.surface), segment.volume_mm3, m});
+    for (const SegmentEdge& edge : adjacency(model.tets, model.segments))
+      problem.edges.push_back({edge.a + first, edge.b + first, edge.area_mm2});
+  }
+  problem.build_mm = profile.build();
+  problem.gap_mm = profile.pack.gap_mm;
+  problem.grid_mm = profile.pack.grid_mm;
+  problem.rotation_step = radians(profile.pack.rotation_step_deg);
+  problem.support_angle = radians(profile.support_angle_deg);
+  problem.search_grid_mm = profile.pack.search_grid_mm;
+  problem.search_rotation_step = radians(profile.pack.search_rotation_step_deg);
+  problem.cost = packing_cost(profile);
+  problem.tabu_memory = profile.pack.tabu_memory;
+  problem.tabu_patience = profile.pack.tabu_patience;
+  problem.tabu_samples = profile.pack.tabu_samples;
+  problem.budget_s = budget_s;
+  problem.seed = seed;
+  return problem;
+}
+
+// The parts' surfaces after the packer's merges, and the glue between them. `placed` lists the parts
+// of one divided model as indices into packing.parts; results are written into parts by that index.
+void extract_parts(const Divided& model, int first_item, const std::vector<int>& placed,
+                   const Packing& packing, std::vector<JobPart>& parts, const Progress& progress) {
+  std::vector<std::vector<int>> groups;
+  for (const int index : placed) {
+    std::vector<int> group = packing.parts[index].items;
+    for (int& item : group) item -= first_item;
+    groups.push_back(std::move(group));
+  }
+  TetMesh tets = model.tets;
+  Segments merged = united(model.segments, groups);
+  make_manifold(tets, merged, progress);
+  std::vector<SegmentSurface> surfaces = part_surfaces(tets, merged);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    parts[placed[i]].surface = std::move(surfaces[i].surface);
+    parts[placed[i]].volume_mm3 = surfaces[i].volume_mm3;
+  }
+  for (const SegmentEdge& edge : adjacency(tets, merged)) {
+    parts[placed[edge.a]].neighbours.push_back({parts[placed[edge.b]].id, edge.area_mm2});
+    parts[placed[edge.b]].neighbours.push_back({parts[placed[edge.a]].id, edge.area_mm2});
+  }
+}
+
+Arrangement arrange(const Models& models, const PackProblem& problem, const Packing& packing,
+                    const Progress& progress) {
+  const std::vector<int> first = first_items(models);
+  Arrangement arrangement;
+  arrangement.trays = static_cast<int>(packing.trays.size());
+  std::vector<std::vector<int>> placed(models.size());
+  for (int i = 0; i < static_cast<int>(packing.parts.size()); ++i) {
+    const PlacedPart& from = packing.parts[i];
+    JobPart part;
+    part.id = i + 1;
+    part.model = problem.items[from.items.front()].model;
+    part.tray = from.tray + 1;
+    part.pose = from.pose;
+    placed[part.model].push_back(i);
+    arrangement.parts.push_back(std::move(part));
+  }
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    if (models[m]->tets.count() > 0) {
+      extract_parts(*models[m], first[m], placed[m], packing, arrangement.parts, progress);
+    } else {
+      JobPart& whole = arrangement.parts[placed[m].front()];
+      whole.surface = problem.items[first[m]].surface;
+      whole.volume_mm3 = problem.items[first[m]].volume_mm3;
+    }
+  }
+  for (const int index : packing.removal_order)
+    arrangement.removal_order.push_back(arrangement.parts[index].id);
+  return arrangement;
+}
+
+// Turning segments into parts may move a cut by a little, so a part may stand a little too deep.
+void lift_above_plate(Arrangement& arrangement) {
+  for (JobPart& part : arrangement.parts) {
+    const double lowest = bounding_box(transformed(part.surface, part.pose)).min().z();
+    if (lowest < 0) part.pose.pretranslate(Vec3(0, 0, -lowest));
+  }
+}
+
+// By how much the worst promise on distances is missed, mm; at most 0 when all are kept.
+double shortfall(const Arrangement& arrangement, const Profile& profile) {
+  constexpr double kRounding = 1e-4;  // what single precision in the files may take, mm
+  double worst = 0;
+  for (const Tray& tray : trays_of(arrangement)) {
+    const double gap = least_gap_mm(tray.parts, profile.pack.gap_mm);
+    worst = std::max(worst, profile.pack.gap_mm - gap - kRounding);
+    for (const Mesh& part : tray.parts) {
+      const Box3 box = bounding_box(part);
+      worst = std::max({worst, -box.min().minCoeff() - kRounding,
+                        (box.max() - profile.build()).maxCoeff() - kRounding});
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+Arrangement pack_models(const Models& models, const Profile& profile, std::uint64_t seed,
+                        double budget_s, const Progress& progress) {
+  PackProblem problem = problem_of(models, profile, seed, budget_s);
+  double missing = 0;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const Packing packing = pack(problem, progress);
+    Arrangement arrangement = arrange(models, problem, packing, progress);
+    lift_above_plate(arrangement);
+    missing = shortfall(arrangement, profile);
+    if (missing <= 0) return arrangement;
+    problem.gap_mm += missing + 0.05;
+    problem.build_mm -= Vec3::Constant(missing);
+  }
+  throw Error(Fault::kInternal,
+              fmt::format("The packed parts miss their distances by {:.3f} mm", missing),
+              "Try another --seed, or a finer --set grid_mm, and report this model.");
+}
+
+}  // namespace packmerger
