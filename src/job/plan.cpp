@@ -1,0 +1,172 @@
+#include "job/plan.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "job/divide.h"
+#include "job/pack_models.h"
+#include "job/unpacked.h"
+#include "printers/estimate.h"
+#include "printers/slice.h"
+
+namespace packmerger {
+namespace {
+
+class Timings {
+ public:
+  template <typename Work>
+  auto measure(const std::string& stage, const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    auto result = work();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    stages_.emplace_back(stage, took.count());
+    return result;
+  }
+  const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
+
+ private:
+  std::vector<std::pair<std::string, double>> stages_;
+};
+
+using DividedModels = std::vector<std::shared_ptr<const Divided>>;
+
+// Copies of one input are divided once.
+DividedModels divide_all(const std::vector<LoadedModel>& loaded, const Profile& profile,
+                         const PlanOptions& options, Warnings& warnings, const Progress& progress) {
+  std::map<const Mesh*, std::shared_ptr<const Divided>> done;
+  DividedModels models;
+  for (const LoadedModel& model : loaded) {
+    std::shared_ptr<const Divided>& divided = done[model.surface.get()];
+    if (!divided) {
+      divided = std::make_shared<const Divided>(
+          options.split
+              ? divide(*model.surface, profile, options.hollow, options.seed, warnings, progress)
+              : keep_whole(*model.surface, profile, options.hollow, warnings, progress));
+    }
+    models.push_back(divided);
+  }
+  return models;
+}
+
+WholeModels surfaces_of(const std::vector<LoadedModel>& loaded) {
+  WholeModels surfaces;
+  for (const LoadedModel& model : loaded) surfaces.push_back(model.surface);
+  return surfaces;
+}
+
+WholeModels shells_of(const DividedModels& models) {
+  std::map<const Divided*, std::shared_ptr<const Mesh>> done;
+  WholeModels shells;
+  for (const auto& model : models) {
+    std::shared_ptr<const Mesh>& shell = done[model.get()];
+    if (!shell) shell = std::make_shared<const Mesh>(shell_surface(model->shell));
+    shells.push_back(shell);
+  }
+  return shells;
+}
+
+std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const Profile& profile,
+                                    const Progress& progress) {
+  if (!way) return std::nullopt;
+  const std::vector<Tray> trays = trays_of(*way);
+  return profile.dialect == Dialect::kHandoff
+             ? estimate(profile, trays, assembly_of(*way), progress)
+             : estimate_by_slicer(profile, trays, assembly_of(*way), progress);
+}
+
+bool same_poses(const Arrangement& a, const Arrangement& b) {
+  return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
+                    [](const JobPart& one, const JobPart& other) {
+                      return one.tray == other.tray &&
+                             one.pose.matrix() == other.pose.matrix();
+                    });
+}
+
+void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
+               const PlanOptions& options, const Progress& progress) {
+  try {
+    plan.packed = pack_models(models, profile, options.seed, options.budget_s, progress);
+  } catch (const Error& error) {
+    // What fits no tray is an outcome that a comparison shows; anything else goes on.
+    if (error.fault() != Fault::kBadInput) throw;
+    plan.not_packed = error;
+  }
+}
+
+Comparison compare_ways(const Plan& plan, const std::optional<Arrangement>& as_is,
+                        const Profile& profile, const Progress& progress) {
+  Comparison comparison;
+  progress.report("estimating", 0.2);
+  comparison.solid = estimate_of(plan.solid, profile, progress);
+  progress.report("estimating", 0.4);
+  comparison.as_is = as_is && plan.solid && same_poses(*as_is, *plan.solid)
+                         ? comparison.solid
+                         : estimate_of(as_is, profile, progress);
+  progress.report("estimating", 0.6);
+  comparison.hollow = estimate_of(plan.hollow, profile, progress);
+  progress.report("estimating", 0.8);
+  comparison.packed = estimate_of(plan.packed, profile, progress);
+  return comparison;
+}
+
+void drop_repeated(Warnings& warnings) {
+  Warnings once;
+  for (const Warning& warning : warnings) {
+    const bool known = std::any_of(once.begin(), once.end(), [&](const Warning& other) {
+      return other.code == warning.code && other.text == warning.text;
+    });
+    if (!known) once.push_back(warning);
+  }
+  warnings = std::move(once);
+}
+
+void record(Job& job, const std::vector<LoadedModel>& loaded, const DividedModels& models) {
+  for (const LoadedModel& model : loaded) {
+    job.inputs.push_back(model.input);
+    job.models.push_back(*model.surface);
+  }
+  for (const auto& model : models) {
+    job.shell_volume_mm3 += model->shell.volume_mm3;
+    job.tetrahedra += model->tets.count();
+    job.clusters += model->clusters;
+    job.after_premerge += model->segments.count;
+    if (model->resample_tolerance_mm)
+      job.resample_tolerance_mm =
+          std::max(job.resample_tolerance_mm.value_or(0), *model->resample_tolerance_mm);
+  }
+}
+
+}  // namespace
+
+Plan plan(const Profile& profile, const PlanOptions& options, const Progress& progress) {
+  Plan plan;
+  plan.job.profile = profile;
+  plan.job.seed = options.seed;
+  Warnings& warnings = plan.job.warnings;
+  Timings timings;
+
+  const std::vector<LoadedModel> loaded = timings.measure(
+      "load", [&] { return load_models(options.models, options.sizing, warnings, progress); });
+  const DividedModels models = timings.measure(
+      "divide", [&] { return divide_all(loaded, profile, options, warnings, progress); });
+  record(plan.job, loaded, models);
+
+  timings.measure("pack", [&] {
+    pack_into(plan, models, profile, options, progress);
+    return 0;
+  });
+  plan.job.estimates = timings.measure("estimate", [&] {
+    progress.report("estimating", 0);
+    plan.solid = stand_best(surfaces_of(loaded), profile, progress);
+    plan.hollow = stand_best(shells_of(models), profile, progress);
+    return compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), profile, progress);
+  });
+
+  drop_repeated(warnings);
+  plan.job.timings_s = timings.stages();
+  return plan;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,107 @@
+#include "job/prepare.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "printers/packing_cost.h"
+#include "printers/program.h"
+#include "tray/write_job_folder.h"
+
+namespace packmerger {
+namespace {
+
+std::string name_of(Variant variant) {
+  switch (variant) {
+    case Variant::kSolid:
+      return "solid";
+    case Variant::kHollow:
+      return "hollow";
+    default:
+      return "packed";
+  }
+}
+
+Arrangement take(Plan& plan, Variant variant) {
+  std::optional<Arrangement>& way = variant == Variant::kSolid    ? plan.solid
+                                    : variant == Variant::kHollow ? plan.hollow
+                                                                  : plan.packed;
+  if (way) return std::move(*way);
+  if (variant == Variant::kPacked && plan.not_packed) throw *plan.not_packed;
+  throw Error(Fault::kBadInput, "The model does not fit the printer in one piece",
+              "Use --variant packed, which divides it into parts that fit.");
+}
+
+Variant decide(Variant wanted, const Plan& plan) {
+  if (wanted != Variant::kCheapest) return wanted;
+  return cheapest(plan.job.estimates).value_or(Variant::kPacked);
+}
+
+void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
+  const Cost cost = packing_cost(job.profile);
+  for (const Tray& tray : trays) {
+    const TrayMeasure measured = measure(tray, job.profile);
+    job.cost += cost.evaluate(measured);
+    job.bbox_mm3 += measured.size_mm.prod();
+    job.support_mm3 += measured.support_mm3;
+    job.height_mm = std::max(job.height_mm, measured.size_mm.z());
+  }
+  job.final_segments = static_cast<int>(arrangement.parts.size());
+  job.parts = std::move(arrangement.parts);
+  job.removal_order = std::move(arrangement.removal_order);
+}
+
+std::vector<TrayFiles> programs(const Job& job, const std::vector<Tray>& trays,
+                                const Progress& progress) {
+  std::vector<TrayFiles> files;
+  for (std::size_t i = 0; i < trays.size(); ++i) {
+    progress.report("slicing", static_cast<double>(i) / static_cast<double>(trays.size()));
+    std::string name = std::filesystem::path(job.inputs.front().file).stem().string();
+    if (trays.size() > 1) name += "-" + std::to_string(i + 1);
+    std::optional<Program> program = make_program(job.profile, trays[i], name, progress);
+    TrayFiles tray;
+    if (program) {
+      tray.program_extension = program->extension;
+      tray.program = std::move(program->bytes);
+    }
+    files.push_back(std::move(tray));
+  }
+  return files;
+}
+
+}  // namespace
+
+Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
+            const std::filesystem::path& out, const Progress& progress) {
+  Plan planned = plan(profile, options, progress);
+  const Variant chosen = decide(variant, planned);
+  Arrangement arrangement = take(planned, chosen);
+  const std::vector<Tray> trays = trays_of(arrangement);
+
+  Job job = std::move(planned.job);
+  job.variant = name_of(chosen);
+  record(job, std::move(arrangement), trays);
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<TrayFiles> files = programs(job, trays, progress);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  job.timings_s.emplace_back("program", took.count());
+  write_job_folder(job, files, out, progress);
+  return job;
+}
+
+std::optional<Variant> cheapest(const Comparison& comparison) {
+  std::optional<Variant> best;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& [variant, estimate] : {std::pair{Variant::kSolid, comparison.solid},
+                                          std::pair{Variant::kHollow, comparison.hollow},
+                                          std::pair{Variant::kPacked, comparison.packed}})
+    if (estimate && estimate->cost < lowest) {
+      lowest = estimate->cost;
+      best = variant;
+    }
+  return best;
+}
+
+}  // namespace packmerger
