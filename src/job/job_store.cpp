@@ -1,0 +1,239 @@
+#include "job/job_store.h"
+
+#include <chrono>
+#include <utility>
+
+#include "base/error.h"
+#include "job/sqlite.h"
+
+namespace packmerger {
+
+using sqlite::Connection;
+using sqlite::Statement;
+using sqlite::Transaction;
+
+struct JobStore::Database {
+  Connection connection;
+  explicit Database(const std::filesystem::path& file) : connection(file) {}
+};
+
+namespace {
+
+constexpr std::int64_t kSchema = 1;
+
+constexpr const char* kMakeTables = R"(
+CREATE TABLE job (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  printer TEXT NOT NULL, name TEXT NOT NULL, origin TEXT NOT NULL, input TEXT NOT NULL,
+  sha256 TEXT NOT NULL, state TEXT NOT NULL, held INTEGER NOT NULL, attempt INTEGER NOT NULL,
+  folder TEXT NOT NULL, trays INTEGER NOT NULL, next_tray INTEGER NOT NULL, pays INTEGER NOT NULL,
+  estimates TEXT NOT NULL, reason TEXT NOT NULL, hint TEXT NOT NULL, filed TEXT NOT NULL,
+  filing_done INTEGER NOT NULL, again_of INTEGER NOT NULL, received_s REAL NOT NULL,
+  sending_s REAL NOT NULL, ended_s REAL NOT NULL);
+CREATE INDEX job_open ON job (id) WHERE ended_s = 0 OR filing_done = 0;
+CREATE INDEX job_bytes ON job (sha256);
+CREATE TABLE event (
+  job INTEGER NOT NULL REFERENCES job (id) ON DELETE CASCADE,
+  at_s REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL);
+CREATE INDEX event_job ON event (job);
+CREATE TABLE printer (
+  name TEXT PRIMARY KEY, bed_clear INTEGER NOT NULL, paused INTEGER NOT NULL) WITHOUT ROWID;
+PRAGMA user_version = 1;
+)";
+
+constexpr std::string_view kColumns =
+    "printer, name, origin, input, sha256, state, held, attempt, folder, trays, next_tray, pays, "
+    "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s";
+
+std::string select(std::string_view condition) {
+  return "SELECT id, " + std::string(kColumns) + " FROM job " + std::string(condition);
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void bind_job(Statement& statement, const JobRecord& job) {
+  const auto flag = [](bool value) { return static_cast<std::int64_t>(value); };
+  statement.bind(job.printer).bind(job.name).bind(job.origin).bind(job.input).bind(job.sha256);
+  statement.bind(state_name(job.state)).bind(flag(job.held)).bind(std::int64_t{job.attempt});
+  statement.bind(job.folder).bind(std::int64_t{job.trays}).bind(std::int64_t{job.next_tray});
+  statement.bind(flag(job.pays)).bind(job.estimates).bind(job.reason).bind(job.hint);
+  statement.bind(job.filed).bind(flag(job.filing_done)).bind(job.again_of);
+  statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
+}
+
+JobState read_state(Statement& row) {
+  const std::string name = row.text();
+  if (const std::optional<JobState> state = state_named(name)) return *state;
+  throw Error(Fault::kIo, "The jobs' database holds the unknown state \"" + name + "\"",
+              "It was changed by another program; restore it or move it away.");
+}
+
+JobRecord read_job(Statement& row) {
+  JobRecord job;
+  job.id = row.integer();
+  job.printer = row.text();
+  job.name = row.text();
+  job.origin = row.text();
+  job.input = row.text();
+  job.sha256 = row.text();
+  job.state = read_state(row);
+  job.held = row.flag();
+  job.attempt = static_cast<int>(row.integer());
+  job.folder = row.text();
+  job.trays = static_cast<int>(row.integer());
+  job.next_tray = static_cast<int>(row.integer());
+  job.pays = row.flag();
+  job.estimates = row.text();
+  job.reason = row.text();
+  job.hint = row.text();
+  job.filed = row.text();
+  job.filing_done = row.flag();
+  job.again_of = row.integer();
+  job.received_s = row.real();
+  job.sending_s = row.real();
+  job.ended_s = row.real();
+  return job;
+}
+
+std::vector<JobRecord> read_jobs(Statement& rows) {
+  std::vector<JobRecord> jobs;
+  while (rows.step()) jobs.push_back(read_job(rows));
+  return jobs;
+}
+
+void write_event(const Connection& connection, const JobRecord& job, std::string_view note) {
+  Statement statement(connection, "INSERT INTO event (job, at_s, state, note) VALUES (?, ?, ?, ?)");
+  statement.bind(job.id).bind(now_s()).bind(state_name(job.state)).bind(note).finish();
+}
+
+void write_printer(const Connection& connection, const PrinterRecord& printer) {
+  Statement statement(connection,
+                      "REPLACE INTO printer (name, bed_clear, paused) VALUES (?, ?, ?)");
+  statement.bind(printer.name).bind(std::int64_t{printer.bed_clear});
+  statement.bind(std::int64_t{printer.paused}).finish();
+}
+
+[[noreturn]] void forbidden(const JobRecord& job, std::string_view from) {
+  throw Error(Fault::kInternal,
+              "Job " + std::to_string(job.id) + " cannot step from " + std::string(from) + " to " +
+                  std::string(state_name(job.state)),
+              "Please report this as a bug.");
+}
+
+}  // namespace
+
+JobStore::JobStore(const std::filesystem::path& file)
+    : database_(std::make_unique<Database>(file)) {
+  Connection& connection = database_->connection;
+  connection.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
+  Transaction transaction(connection);
+  Statement version(connection, "PRAGMA user_version");
+  const std::int64_t found = version.step() ? version.integer() : 0;
+  version.finish();
+  if (found > kSchema)
+    throw Error(Fault::kIo, file.string() + " was written by a newer PackMerger",
+                "Install that version again, or name another state folder.");
+  if (found == 0) connection.run(kMakeTables);
+  transaction.commit();
+}
+
+JobStore::JobStore(JobStore&&) noexcept = default;
+JobStore::~JobStore() = default;
+
+JobRecord JobStore::add(JobRecord job) {
+  if (!may_begin(job.state)) forbidden(job, "nothing");
+  Connection& connection = database_->connection;
+  Transaction transaction(connection);
+  Statement statement(connection, "INSERT INTO job (" + std::string(kColumns) +
+                                      ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  bind_job(statement, job);
+  statement.finish();
+  job.id = sqlite3_last_insert_rowid(connection.get());
+  write_event(connection, job, "");
+  transaction.commit();
+  return job;
+}
+
+void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRecord* printer) {
+  Connection& connection = database_->connection;
+  Transaction transaction(connection);
+  const std::optional<JobRecord> before = find(job.id);
+  const bool stays_ended = before && before->state == job.state && has_ended(job.state);
+  if (!before || (!stays_ended && !may_follow(before->state, job.state)))
+    forbidden(job, before ? state_name(before->state) : "nothing");
+  Statement statement(connection,
+                      "UPDATE job SET (" + std::string(kColumns) +
+                          ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
+  bind_job(statement, job);
+  statement.bind(job.id).finish();
+  if (before->state != job.state || !note.empty()) write_event(connection, job, note);
+  if (printer != nullptr) write_printer(connection, *printer);
+  transaction.commit();
+}
+
+void JobStore::forget(std::int64_t id) {
+  Connection& connection = database_->connection;
+  Transaction transaction(connection);
+  Statement statement(connection, "DELETE FROM job WHERE id = ? AND state = 'claiming'");
+  statement.bind(id).finish();
+  transaction.commit();
+}
+
+std::optional<JobRecord> JobStore::find(std::int64_t id) const {
+  Statement row(database_->connection, select("WHERE id = ?"));
+  if (!row.bind(id).step()) return std::nullopt;
+  return read_job(row);
+}
+
+std::vector<JobRecord> JobStore::open_jobs() const {
+  Statement rows(database_->connection, select("WHERE ended_s = 0 OR filing_done = 0 ORDER BY id"));
+  return read_jobs(rows);
+}
+
+std::vector<JobRecord> JobStore::newest(int limit) const {
+  Statement rows(database_->connection, select("ORDER BY id DESC LIMIT ?"));
+  rows.bind(std::int64_t{limit});
+  return read_jobs(rows);
+}
+
+std::int64_t JobStore::same_bytes(const JobRecord& job) const {
+  Statement row(database_->connection,
+                "SELECT id FROM job WHERE sha256 = ? AND sha256 <> '' AND id <> ? "
+                "ORDER BY id DESC LIMIT 1");
+  row.bind(job.sha256).bind(job.id);
+  return row.step() ? row.integer() : 0;
+}
+
+std::vector<JobEvent> JobStore::history(std::int64_t id) const {
+  Statement rows(database_->connection,
+                 "SELECT at_s, state, note FROM event WHERE job = ? ORDER BY rowid");
+  rows.bind(id);
+  std::vector<JobEvent> events;
+  while (rows.step()) {
+    JobEvent event;
+    event.at_s = rows.real();
+    event.state = read_state(rows);
+    event.note = rows.text();
+    events.push_back(std::move(event));
+  }
+  return events;
+}
+
+PrinterRecord JobStore::printer(const std::string& name) const {
+  Statement row(database_->connection, "SELECT bed_clear, paused FROM printer WHERE name = ?");
+  PrinterRecord printer{name};
+  if (!row.bind(name).step()) return printer;
+  printer.bed_clear = row.flag();
+  printer.paused = row.flag();
+  return printer;
+}
+
+void JobStore::save(const PrinterRecord& printer) {
+  Transaction transaction(database_->connection);
+  write_printer(database_->connection, printer);
+  transaction.commit();
+}
+
+}  // namespace packmerger

@@ -1,0 +1,96 @@
+// The daemon's memory: every job and every printer's bed, in one SQLite file. WAL mode,
+// synchronous=FULL: when a call has returned, what it wrote survives a power cut; when the program
+// dies within a call, it is written whole or not at all.
+//
+// One thread owns a JobStore. Every call throws Error: kCannotWrite (disk full, read-only), kIo
+// (not a database, damaged), kBusy (another program holds it), kInternal (a step that
+// job_state.h forbids).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "job/job_state.h"
+
+namespace packmerger {
+
+struct JobRecord {
+  std::int64_t id = 0;  // from 1, never used again
+  std::string printer;  // the configured printer's name
+  std::string name;     // the file's name as it arrived
+  std::string origin;   // the path it arrived at; empty for a job printed again
+  std::string input;    // the path of the job's own copy; empty once it was filed
+  std::string sha256;   // of its bytes; empty until they were hashed
+  JobState state = JobState::kClaiming;
+  bool held = false;          // not sent until somebody approves it
+  int attempt = 0;            // how often preparing began
+  std::string folder;         // the prepared job folder; empty until preparing began
+  int trays = 0;              // 0 until prepared
+  int next_tray = 1;          // the tray that is sent now or next, from 1
+  bool pays = false;          // what was prepared is cheaper than every other way that fits
+  std::string estimates;      // job.json's "estimates", JSON text; empty until prepared
+  std::string reason;         // why it failed, was cancelled or asks; one sentence
+  std::string hint;           // what to do next; may be empty
+  std::string filed;          // where the file ended, below done/ or failed/; empty until chosen
+  bool filing_done = false;   // the file and the note beside it are there
+  std::int64_t again_of = 0;  // the job whose program or file this one uses again; 0: none
+  double received_s = 0;      // Unix time
+  double sending_s = 0;       // when the first tray began; 0: not yet
+  double ended_s = 0;         // 0: not yet
+};
+
+struct PrinterRecord {
+  std::string name;
+  bool bed_clear = false;  // somebody said so, and nothing was printed since
+  bool paused = false;     // no new print starts
+};
+
+struct JobEvent {
+  double at_s = 0;  // Unix time
+  JobState state = JobState::kClaiming;
+  std::string note;  // may be empty
+};
+
+class JobStore {
+ public:
+  // Opens or makes the file. A file written by a newer PackMerger is refused.
+  explicit JobStore(const std::filesystem::path& file);
+  JobStore(JobStore&&) noexcept;
+  JobStore& operator=(JobStore&&) = delete;
+  ~JobStore();
+
+  // Adds a job (its id is ignored) and returns it with its id. state must satisfy may_begin().
+  JobRecord add(JobRecord job);
+
+  // Writes a job back, with a line for its history when the state changed or note is not empty.
+  // With printer, both are written in one step.
+  void save(const JobRecord& job, std::string_view note = {},
+            const PrinterRecord* printer = nullptr);
+
+  // Forgets a job that is still being claimed: its file never left the watched folder.
+  void forget(std::int64_t id);
+
+  std::optional<JobRecord> find(std::int64_t id) const;
+  // Jobs that have not ended, and ended ones whose file is not yet filed; oldest first.
+  std::vector<JobRecord> open_jobs() const;
+  // At most `limit` jobs, newest first.
+  std::vector<JobRecord> newest(int limit) const;
+  // The newest other job with the same bytes for any printer; 0: none.
+  std::int64_t same_bytes(const JobRecord& job) const;
+  std::vector<JobEvent> history(std::int64_t id) const;
+
+  // A printer never seen before: its bed is not clear, and it is not paused.
+  PrinterRecord printer(const std::string& name) const;
+  void save(const PrinterRecord& printer);
+
+ private:
+  struct Database;
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace packmerger
