@@ -180,7 +180,8 @@ std::vector<ProfileKey> profile_keys() {
   Profile names_only;
   std::vector<ProfileKey> rows;
   for (const Key& key : keys_of(names_only))
-    rows.push_back({key.name, type_name(key), key.unit, range_text(key), key.meaning});
+    rows.push_back({key.name, type_name(key), key.unit, range_text(key), key.meaning,
+                    key.required ? "required" : toml_value(key)});
   return rows;
 }
 

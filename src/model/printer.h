@@ -169,6 +169,7 @@ struct ProfileKey {
   std::string unit;     // may be empty
   std::string range;    // may be empty
   std::string meaning;  // one sentence
+  std::string default_value;  // as TOML; "required" where a profile must say it
 };
 std::vector<ProfileKey> profile_keys();
 

@@ -81,6 +81,7 @@ bool assign(const Key& key, const RawValue& value);
 std::string expected(const Key& key);
 
 std::string type_name(const Key& key);
+std::string toml_value(const Key& key);  // what the key holds now; a table of texts: its lines
 std::string range_text(const Key& key);  // may be empty
 
 // What is missing for this profile's technology and dialect: "polyjet.layer_s must be above 0 …",

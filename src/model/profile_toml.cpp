@@ -52,6 +52,8 @@ struct TomlText {
 
 }  // namespace
 
+std::string toml_value(const Key& key) { return std::visit(TomlText{}, key.kind); }
+
 std::string profile_toml(const Profile& profile) {
   Profile copy = profile;  // keys are bound to something they could change
   std::string out;
@@ -66,7 +68,7 @@ std::string profile_toml(const Profile& profile) {
       out += fmt::format("\n[{}]\n", of);
       table = of;
     }
-    const std::string value = std::visit(TomlText{}, key.kind);
+    const std::string value = toml_value(key);
     if (std::holds_alternative<TextTableKey>(key.kind)) {
       sub_tables += fmt::format("\n[{}]\n{}", key.name, value);
       continue;
