@@ -34,16 +34,25 @@ function(packmerger_program name)
   target_link_libraries(${name} PRIVATE packmerger_compile_options ${ARG_LINKS})
 endfunction()
 
-# packmerger_test(NAME SOURCES ... LINKS ... [TIMEOUT s] [LABELS ...]): a GoogleTest program, one ctest test a
-# TEST(). tests/ is on the include path.
+# packmerger_test(NAME SOURCES ... LINKS ... [TIMEOUT s] [LABEL unit|unit-threads|...]): a GoogleTest
+# program, one ctest test a TEST(). tests/ is on the include path. Label unit (the default) runs under
+# the address and undefined sanitizers, unit-threads under the thread sanitizer as well; the target
+# LABEL_tests builds all programs of a label.
 function(packmerger_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT" "SOURCES;LINKS;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT;LABEL" "SOURCES;LINKS")
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
+  endif()
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL unit)
   endif()
   packmerger_program(${name} SOURCES ${ARG_SOURCES} LINKS ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABEL} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]"
     ENVIRONMENT "PACKMERGER_SOURCE=${PROJECT_SOURCE_DIR};PACKMERGER_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  if(NOT TARGET ${ARG_LABEL}_tests)
+    add_custom_target(${ARG_LABEL}_tests)
+  endif()
+  add_dependencies(${ARG_LABEL}_tests ${name})
 endfunction()

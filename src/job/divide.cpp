@@ -20,14 +20,14 @@ Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std:
   divided.resample_tolerance_mm = solid.resample_tolerance_mm;
 
   Segments clusters = segment(divided.tets, profile.shape, seed, progress);
-  make_manifold(divided.tets, clusters, progress);
+  make_manifold(divided.tets, clusters, progress, kFreeReach);
   divided.clusters = clusters.count;
 
   const BuildVolume build{profile.build(), radians(profile.pack.rotation_step_deg)};
   divided.segments = premerge(divided.tets, clusters, profile.shape, build, warnings, progress);
 
   const CutRoughness roughness =
-      smooth_cuts(divided.tets, divided.segments, divided.shell.outer, profile.shape, progress);
+      smooth_cuts(divided.tets, divided.segments, profile.shape, progress);
   divided.roughness_before = roughness.before_rad;
   divided.roughness_after = roughness.after_rad;
   return divided;

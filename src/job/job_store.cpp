@@ -25,6 +25,7 @@ constexpr const char* kMakeTables = R"(
 CREATE TABLE job (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
   printer TEXT NOT NULL, name TEXT NOT NULL, origin TEXT NOT NULL, input TEXT NOT NULL,
+  by_copy INTEGER NOT NULL,
   sha256 TEXT NOT NULL, state TEXT NOT NULL, held INTEGER NOT NULL, attempt INTEGER NOT NULL,
   folder TEXT NOT NULL, trays INTEGER NOT NULL, next_tray INTEGER NOT NULL, pays INTEGER NOT NULL,
   estimates TEXT NOT NULL, reason TEXT NOT NULL, hint TEXT NOT NULL, filed TEXT NOT NULL,
@@ -42,7 +43,8 @@ PRAGMA user_version = 1;
 )";
 
 constexpr std::string_view kColumns =
-    "printer, name, origin, input, sha256, state, held, attempt, folder, trays, next_tray, pays, "
+    "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
+    "next_tray, pays, "
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s";
 
 std::string select(std::string_view condition) {
@@ -55,7 +57,8 @@ double now_s() {
 
 void bind_job(Statement& statement, const JobRecord& job) {
   const auto flag = [](bool value) { return static_cast<std::int64_t>(value); };
-  statement.bind(job.printer).bind(job.name).bind(job.origin).bind(job.input).bind(job.sha256);
+  statement.bind(job.printer).bind(job.name).bind(job.origin).bind(job.input);
+  statement.bind(flag(job.by_copy)).bind(job.sha256);
   statement.bind(state_name(job.state)).bind(flag(job.held)).bind(std::int64_t{job.attempt});
   statement.bind(job.folder).bind(std::int64_t{job.trays}).bind(std::int64_t{job.next_tray});
   statement.bind(flag(job.pays)).bind(job.estimates).bind(job.reason).bind(job.hint);
@@ -77,6 +80,7 @@ JobRecord read_job(Statement& row) {
   job.name = row.text();
   job.origin = row.text();
   job.input = row.text();
+  job.by_copy = row.flag();
   job.sha256 = row.text();
   job.state = read_state(row);
   job.held = row.flag();
@@ -147,7 +151,7 @@ JobRecord JobStore::add(JobRecord job) {
   Connection& connection = database_->connection;
   Transaction transaction(connection);
   Statement statement(connection, "INSERT INTO job (" + std::string(kColumns) +
-                                      ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+                                      ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
   bind_job(statement, job);
   statement.finish();
   job.id = sqlite3_last_insert_rowid(connection.get());
@@ -165,7 +169,7 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
     forbidden(job, before ? state_name(before->state) : "nothing");
   Statement statement(connection,
                       "UPDATE job SET (" + std::string(kColumns) +
-                          ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
+                          ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
   bind_job(statement, job);
   statement.bind(job.id).finish();
   if (before->state != job.state || !note.empty()) write_event(connection, job, note);

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "cli/plan_options.h"
+#include "cli/verb.h"
+#include "job/comparison_table.h"
+#include "job/plan.h"
+#include "tray/job_json.h"
+
+namespace packmerger::cli {
+namespace {
+
+struct Arguments {
+  PlanArguments plan;
+  std::vector<std::string> profiles;
+  bool json = false;
+};
+
+void run(const Arguments& arguments) {
+  std::vector<Profile> profiles;
+  for (const std::string& name : arguments.profiles)
+    profiles.push_back(chosen_profile(name, arguments.plan));
+  nlohmann::json all = nlohmann::json::object();
+  std::vector<Job> jobs;
+  {
+    const Progress progress = terminal_progress();
+    for (const Profile& profile : profiles)
+      jobs.push_back(plan(profile, plan_options(arguments.plan), progress).job);
+  }
+  for (const Job& job : jobs) {
+    all[job.profile.id] = comparison_json(job.estimates);
+    if (!arguments.json) fmt::print("{}\n", comparison_table(job.estimates, job.profile));
+    for (const Warning& warning : job.warnings)
+      fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
+  }
+  if (arguments.json) std::cout << json_text(all);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = program.add_subcommand(
+      "compare", "Compares the ways of printing: as the file stands, solid, hollow, packed");
+  add_plan_options(*verb, arguments->plan);
+  verb->add_option("--profile", arguments->profiles, "a profile's id or path; may be given again")
+      ->required()
+      ->take_all();
+  verb->add_flag("--json", arguments->json, "prints {profile id: estimates}");
+  verb->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace packmerger::cli

@@ -1,0 +1,63 @@
+// packmerger VERB …: parses the command line, runs one verb, and turns an Error into its exit code.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+#include "base/error.h"
+#include "cli/verb.h"
+
+namespace {
+
+using packmerger::Error;
+using packmerger::Fault;
+
+int report(const Error& error) {
+  std::cerr << "error: " << error.what() << ".\n";
+  if (!error.hint().empty()) std::cerr << "hint: " << error.hint() << "\n";
+  return error.exit_code();
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Prepares a 3D model for one given printer: hollows it, divides it into parts, "
+                   "packs them on the tray, compares, and sends the job.");
+  program.require_subcommand(1);
+  program.set_version_flag("--version", "packmerger " PACKMERGER_VERSION);
+  packmerger::cli::add_prepare(program);
+  packmerger::cli::add_compare(program);
+  packmerger::cli::add_send(program);
+  packmerger::cli::add_profiles(program);
+  packmerger::cli::add_jobs(program);
+  packmerger::cli::add_printers(program);
+  packmerger::cli::add_simulate(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return program.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    program.exit(error, std::cout, std::cerr);
+    return static_cast<int>(Fault::kUsage);
+  }
+  std::cout.flush();
+  if (!std::cout)
+    return report(Error(Fault::kIo, "Cannot write to standard output",
+                        "Check where the output is sent to."));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    return report(error);
+  } catch (const std::bad_alloc&) {
+    return report(Error(Fault::kBadInput, "There is not enough memory for this model",
+                        "Reduce the model or raise the memory limit, and try again."));
+  } catch (const std::exception& error) {
+    return report(Error(Fault::kInternal, std::string("Internal error: ") + error.what(),
+                        "Please report this with the command and the model."));
+  }
+}

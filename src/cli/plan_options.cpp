@@ -1,0 +1,54 @@
+#include "cli/plan_options.h"
+
+#include <map>
+
+namespace packmerger::cli {
+namespace {
+
+const std::map<std::string, double> kUnits{{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
+
+}  // namespace
+
+void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
+  verb.add_option("MODEL", arguments.models, "STL, OBJ, PLY, OFF or 3MF; several share the tray")
+      ->required();
+  verb.add_option("--units", arguments.units, "what the file's numbers are, where it does not say")
+      ->check(CLI::IsMember({"mm", "cm", "m", "in"}))
+      ->capture_default_str();
+  CLI::Option* scale =
+      verb.add_option("--scale", arguments.scale, "multiplies the model, on top of its unit")
+          ->check(CLI::PositiveNumber);
+  verb.add_option("--size", arguments.size_mm, "scales the longest side to this many mm")
+      ->check(CLI::PositiveNumber)
+      ->excludes(scale);
+  verb.add_flag("--no-split", arguments.no_split, "packs the models as they are");
+  verb.add_flag("--no-hollow", arguments.no_hollow, "keeps the models solid");
+  verb.add_option("--seed", arguments.seed, "repeats a result; another seed gives another one")
+      ->capture_default_str();
+  verb.add_option("--budget", arguments.budget_s, "seconds for the packing; 0: until it is done")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb.add_option("--set", arguments.settings, "key=value: any setting of the profile")
+      ->take_all();
+}
+
+PlanOptions plan_options(const PlanArguments& arguments) {
+  PlanOptions options;
+  options.models.assign(arguments.models.begin(), arguments.models.end());
+  options.sizing.unit_mm = kUnits.at(arguments.units);
+  options.sizing.scale = arguments.scale;
+  options.sizing.size_mm = arguments.size_mm;
+  options.split = !arguments.no_split;
+  options.hollow = !arguments.no_hollow;
+  options.seed = arguments.seed;
+  options.budget_s = arguments.budget_s;
+  return options;
+}
+
+Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments) {
+  Profile profile = read_profile(id_or_path);
+  for (const std::string& assignment : arguments.settings) set_profile_key(profile, assignment);
+  return profile;
+}
+
+}  // namespace packmerger::cli

@@ -1,0 +1,36 @@
+// The options that prepare and compare share: which models, how large, how they are treated.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "job/plan.h"
+#include "model/printer.h"
+
+namespace packmerger::cli {
+
+struct PlanArguments {
+  std::vector<std::string> models;
+  std::string units = "mm";
+  double scale = 1;
+  std::optional<double> size_mm;
+  bool no_split = false;
+  bool no_hollow = false;
+  std::uint64_t seed = 1;
+  double budget_s = 0;
+  std::vector<std::string> settings;
+};
+
+// Adds the options to a verb; `arguments` must outlive the parsing.
+void add_plan_options(CLI::App& verb, PlanArguments& arguments);
+
+PlanOptions plan_options(const PlanArguments& arguments);
+
+// Reads the profile and applies --set.
+Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments);
+
+}  // namespace packmerger::cli

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with tests, and runs every test.
+#   ./test.sh               release build in build/, everything
+#   ./test.sh debug|thread  the clang builds with sanitizers, the tests that are meant for them
+set -euo pipefail
+cd "$(dirname "$0")"
+source src/install/install.sh
+
+preset=${1:-release}
+install_packages
+install_npm_packages
+export PACKMERGER_MODELS=${PACKMERGER_MODELS:-$(pwd)/../shared/models}
+
+case $preset in
+  release) folder=build; targets=(all); selection=() ;;
+  debug) folder=build-debug; targets=(all); selection=(-L unit) ;;
+  thread) folder=build-thread; targets=(unit-threads_tests); selection=(-L unit-threads) ;;
+  *) echo "usage: ./test.sh [release|debug|thread]" >&2; exit 2 ;;
+esac
+cmake --preset "$preset" -DPACKMERGER_TESTS=ON >/dev/null
+cmake --build "$folder" --target "${targets[@]}"
+report=$folder/ctest.txt
+status=0
+ctest --test-dir "$folder" --output-on-failure -j "$(nproc)" "${selection[@]}" | tee "$report" || status=$?
+echo "Skipped tests: $(grep -c "\*\*\*Skipped" "$report" || true)"
+tail -n 12 "$report" | grep -E 'tests passed|tests failed|Total Test time'
+exit "$status"
