@@ -11,14 +11,15 @@ namespace packmerger {
 struct Contour {
   double area_mm2 = 0;  // negative for a hole
   double perimeter_mm = 0;
+  Eigen::AlignedBox2d box;
 };
 
 struct Layer {
   std::vector<Contour> contours;
   double area_mm2 = 0;      // of matter: the contours' sum
   double perimeter_mm = 0;  // outlines and holes
-  // The axis-aligned box of matter and support in this layer (support to the pitch of its grid,
-  // extent / 256). Empty (isEmpty()) where the layer holds neither.
+  // The axis-aligned box of matter and support in this layer (support to a cell of a grid of some
+  // 65,000). Empty (isEmpty()) where the layer holds neither.
   Eigen::AlignedBox2d extent;
 };
 

@@ -1,0 +1,86 @@
+#include "printers/estimate.h"
+
+#include <algorithm>
+#include <string>
+
+#include "printers/fdm_toolpath.h"
+#include "printers/tray_estimate.h"
+
+namespace packmerger {
+namespace {
+
+TrayEstimate estimate_tray(const Profile& profile, const Tray& tray, const Progress& progress) {
+  if (profile.technology == Technology::kPolyjet) return polyjet_tray(profile, tray, progress);
+  if (profile.fdm.time == FdmTime::kDeposition) return fdm_deposition_tray(profile, tray, progress);
+  return fdm_toolpath_tray(profile, tray, progress);
+}
+
+}  // namespace
+
+Estimate estimate(const Profile& profile, const std::vector<Tray>& trays, const Assembly& assembly,
+                  const Progress& progress) {
+  require_positive(profile, profile.layer_mm, "layer_mm");
+  Estimate sum;
+  sum.source = EstimateSource::kModel;
+  sum.trays = static_cast<int>(trays.size());
+  for (const Tray& tray : trays) {
+    progress.check();
+    const TrayEstimate one = estimate_tray(profile, tray, progress);
+    sum.time_s += one.time_s;
+    sum.model_mm3 += one.model_mm3;
+    sum.model_g += one.model_g;
+    sum.support_mm3 += one.support_mm3;
+    sum.support_g += one.support_g;
+  }
+  price(sum, profile, assembly);
+  return sum;
+}
+
+void price(Estimate& estimate, const Profile& profile, const Assembly& assembly) {
+  const CostSettings& rates = profile.cost;
+  estimate.parts = assembly.parts;
+  estimate.assembly_min = rates.glue_min_per_joint * assembly.joints;
+  const double labour_min = estimate.assembly_min + rates.clean_min_per_tray * estimate.trays;
+  estimate.cost = estimate.model_g * rates.model_price_per_g +
+                  estimate.support_g * rates.support_price_per_g +
+                  estimate.time_s / 3600 * rates.machine_price_per_h +
+                  labour_min / 60 * rates.labour_price_per_h;
+  estimate.currency = rates.currency;
+}
+
+std::vector<const Mesh*> pointers(const Tray& tray) {
+  std::vector<const Mesh*> parts;
+  for (const Mesh& part : tray.parts) parts.push_back(&part);
+  return parts;
+}
+
+double matter_mm3(const Tray& tray) {
+  double sum = 0;
+  for (const Mesh& part : tray.parts) sum += volume_mm3(part);
+  return sum;
+}
+
+double height_mm(const Tray& tray) {
+  double top = 0;
+  for (const Mesh& part : tray.parts)
+    if (part.n_vertices() > 0) top = std::max(top, bounding_box(part).max().z());
+  return top;
+}
+
+void require_positive(const Profile& profile, double value, const char* key) {
+  if (value > 0) return;
+  throw Error(Fault::kBadProfile,
+              "Profile " + profile.id + ": " + key + " must be positive to estimate a print",
+              std::string("Set ") + key + " in the profile or with --set.");
+}
+
+void require_toolpath(const Profile& profile) {
+  const FdmSettings& settings = profile.fdm;
+  require_positive(profile, bead(settings, profile.layer_mm).spacing_mm, "fdm.line_width_mm");
+  require_positive(profile, settings.speed_mm_s, "fdm.speed_mm_s");
+  require_positive(profile, settings.external_speed_mm_s, "fdm.external_speed_mm_s");
+  require_positive(profile, settings.acceleration_mm_s2, "fdm.acceleration_mm_s2");
+  require_positive(profile, settings.min_speed_mm_s, "fdm.min_speed_mm_s");
+}
+
+}  // namespace packmerger

@@ -1,0 +1,12 @@
+// PolyJet: the head jets every layer in swaths; height costs most, then width, length little.
+#pragma once
+
+#include "model/printer.h"
+
+namespace packmerger {
+
+// Seconds for one layer that reaches this far along x (the scan axis) and y, support included.
+// An empty layer is still one pass.
+double polyjet_layer_s(const PolyjetSettings& settings, double x_mm, double y_mm);
+
+}  // namespace packmerger
