@@ -21,16 +21,18 @@ struct ModelFile {
 // "OFF" as first words; 84 + 50·n bytes are a binary STL whatever the header says; "solid" with
 // facets is an ASCII STL), else the extension does.
 //
-// Faces with more than three corners are cut into a fan. Every triangle that is returned has
+// Faces with more than three corners are cut into triangles (ears first, so that they may be
+// concave). Every triangle that is returned has
 // indices within points and every coordinate is finite; nothing else is promised: see repair().
 // 3MF: items, components and their transforms are applied, in mm; objects of type "support" and
 // "other" and items that are not to be printed are left out; models that refer to other parts of
 // the archive (the production extension's p:path) are refused.
 //
 // Nothing in the file is trusted: counts are checked against the bytes that are there before
-// memory is taken. Limits: 1 GiB a file, 2 GiB a 3MF's inflated model part, 30 million triangles
-// after polygons are cut and components are repeated, 64 levels of components. Memory stays below
-// 64 times the file's size (for 3MF, of the inflated part) plus the returned soup.
+// memory is taken. Limits: 1 GiB a file; 512 MiB, and 200 times the archive's size, a 3MF's
+// inflated model part; 30 million triangles after polygons are cut and components are repeated; 64
+// levels of components; coordinates up to 1e9. Memory stays below 64 times the file's size (for
+// 3MF, of the inflated part) plus the returned soup.
 //
 // Throws Error: kNoInput (no such file), kIo, kBadInput (unknown format, broken or truncated file,
 // no triangles, non-finite coordinates, above a limit), kInterrupted.

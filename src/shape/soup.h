@@ -1,0 +1,49 @@
+// Plain work on triangle soups: welding, manifoldness, components. Used by repair.
+#pragma once
+
+#include <vector>
+
+#include "model/mesh.h"
+
+namespace packmerger {
+
+// Merges points nearer than tolerance_mm (0: equal ones) into the first of them, drops points that
+// no triangle uses, and keeps the order of what is left. Triangles keep their number and order;
+// some may have a corner twice afterwards.
+TriangleSoup welded(const TriangleSoup& soup, double tolerance_mm);
+
+// Drops points that no triangle uses; the order of the others is kept.
+TriangleSoup without_unused_points(const TriangleSoup& soup);
+
+// Drops triangles that have a corner twice. Returns how many.
+int drop_collapsed(TriangleSoup& soup);
+
+// Of triangles on the same three points one is kept, or none where as many face one way as the
+// other (a wall between two bodies). Returns how many were dropped.
+int drop_duplicates(TriangleSoup& soup);
+
+// Edges that do not have exactly two triangles.
+int count_open_edges(const TriangleSoup& soup);
+
+// Every directed edge occurs once and its opposite once, and the triangles around each point form
+// one fan. Points must be welded.
+bool is_closed_manifold(const TriangleSoup& soup);
+
+// For each triangle the number of its edge-connected component, from 0 in order of first triangle.
+struct Components {
+  std::vector<int> of_triangle;
+  int count = 0;
+};
+Components components_of(const TriangleSoup& soup);
+
+// One soup a component, in order; points renumbered in order.
+std::vector<TriangleSoup> split_components(const TriangleSoup& soup);
+
+double signed_volume_mm3(const TriangleSoup& soup);
+double area_mm2(const TriangleSoup& soup);
+Box3 bounding_box(const TriangleSoup& soup);
+
+// Triangles whose height is below a billionth of their longest edge.
+int count_flat(const TriangleSoup& soup);
+
+}  // namespace packmerger
