@@ -1,0 +1,113 @@
+#include "job/unpacked.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <set>
+
+#include "model/printer.h"
+
+namespace packmerger {
+namespace {
+
+struct Rectangle {
+  int tray;
+  Vec2 low, high;
+};
+
+std::vector<Rectangle> placed(const std::vector<Vec2>& sizes, const Vec2& tray, double gap) {
+  const std::vector<Slot> slots = side_by_side(sizes, tray, gap);
+  std::vector<Rectangle> rectangles;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    rectangles.push_back({slots[i].tray, slots[i].corner, slots[i].corner + sizes[i]});
+  return rectangles;
+}
+
+TEST(SideBySide, NothingOverlapsOrLeavesTheTray) {
+  EXPECT_TRUE(rc::check([] {
+    const Vec2 tray(100, 80);
+    const double gap = 1;
+    std::vector<Vec2> sizes;
+    for (int i = *rc::gen::inRange(1, 40); i > 0; --i)
+      sizes.emplace_back(*rc::gen::inRange(1, 101), *rc::gen::inRange(1, 81));
+    const std::vector<Rectangle> all = placed(sizes, tray, gap);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      RC_ASSERT((all[i].low.array() >= -1e-9).all());
+      RC_ASSERT((all[i].high.array() <= tray.array() + 1e-9).all());
+      for (std::size_t j = 0; j < i; ++j) {
+        if (all[i].tray != all[j].tray) continue;
+        const bool apart = (all[i].low.array() >= all[j].high.array() + gap - 1e-9).any() ||
+                           (all[j].low.array() >= all[i].high.array() + gap - 1e-9).any();
+        RC_ASSERT(apart);
+      }
+    }
+  }));
+}
+
+TEST(SideBySide, AsManyAsFitShareATray) {
+  const std::vector<Vec2> four(4, Vec2(40, 40));
+  std::set<int> trays;
+  for (const Slot& slot : side_by_side(four, Vec2(81, 81), 1)) trays.insert(slot.tray);
+  EXPECT_EQ(trays.size(), 1u);
+  trays.clear();
+  for (const Slot& slot : side_by_side(four, Vec2(80.5, 81), 1)) trays.insert(slot.tray);
+  EXPECT_EQ(trays.size(), 2u);
+}
+
+TEST(SideBySide, OneAloneStandsInTheMiddle) {
+  const Slot slot = side_by_side({Vec2(20, 10)}, Vec2(100, 50), 1).front();
+  EXPECT_EQ(slot.corner, Vec2(40, 20));
+}
+
+// A box from the origin.
+std::shared_ptr<const Mesh> box(double x, double y, double z) {
+  TriangleSoup soup;
+  for (int i = 0; i < 8; ++i) soup.points.emplace_back(i & 1 ? x : 0, i & 2 ? y : 0, i & 4 ? z : 0);
+  soup.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return std::make_shared<const Mesh>(closed_mesh(soup));
+}
+
+Box3 extent(const Arrangement& arrangement) {
+  Box3 all;
+  for (const Tray& tray : trays_of(arrangement))
+    for (const Mesh& part : tray.parts) all.extend(bounding_box(part));
+  return all;
+}
+
+TEST(StandBest, LaysATallBoxDown) {
+  Profile profile = read_profile("objet30");
+  const auto tall = box(20, 30, 120);
+  const auto best = stand_best({tall}, profile, Progress());
+  ASSERT_TRUE(best);
+  EXPECT_NEAR(extent(*best).sizes().z(), 20, 1e-9) << "PolyJet time follows layers";
+  const auto as_is = stand_as_is({tall}, profile);
+  ASSERT_TRUE(as_is);
+  EXPECT_NEAR(extent(*as_is).sizes().z(), 120, 1e-9);
+}
+
+TEST(StandBest, TurnsToFitAndSaysWhenItCannot) {
+  Profile profile = read_profile("objet30");
+  profile.build_mm = {200, 50, 60};
+  const auto best = stand_best({box(40, 190, 55)}, profile, Progress());
+  ASSERT_TRUE(best);
+  EXPECT_TRUE((extent(*best).max().array() <= profile.build().array() + 1e-9).all());
+  EXPECT_TRUE((extent(*best).min().array() >= -1e-9).all());
+  EXPECT_FALSE(stand_as_is({box(40, 190, 55)}, profile));
+  EXPECT_FALSE(stand_best({box(61, 190, 61)}, profile, Progress()));
+}
+
+TEST(StandBest, TurningKeepsShapeAndVolume) {
+  const Profile profile = read_profile("objet30");
+  const auto model = box(10, 20, 30);
+  const auto best = stand_best({model, model}, profile, Progress());
+  ASSERT_TRUE(best);
+  ASSERT_EQ(best->parts.size(), 2u);
+  for (const JobPart& part : best->parts) {
+    EXPECT_NEAR(part.pose.linear().determinant(), 1, 1e-12);
+    EXPECT_NEAR(volume_mm3(transformed(part.surface, part.pose)), 6000, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace packmerger
