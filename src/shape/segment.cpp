@@ -1,0 +1,204 @@
+#include "shape/segment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+#include <vector>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "shape/label_moves.h"
+#include "shape/manifold_parts.h"
+
+namespace packmerger {
+namespace {
+
+constexpr int kUnassigned = -1;
+
+// The paper's dual graph: a node for every tetrahedron.
+struct DualGraph {
+  explicit DualGraph(const TetMesh& mesh) : neighbours(mesh.neighbours) {
+    for (int t = 0; t < mesh.count(); ++t) {
+      centroids.push_back(mesh.centroid(t));
+      volumes.push_back(mesh.volume_mm3(t));
+      volume += volumes.back();
+    }
+    lengths.resize(neighbours.size());
+    for (int t = 0; t < mesh.count(); ++t)
+      for (int face = 0; face < 4; ++face)
+        if (const int across = neighbours[t][face]; across >= 0)
+          lengths[t][face] = (centroids[t] - centroids[across]).norm();
+  }
+  int count() const { return static_cast<int>(neighbours.size()); }
+
+  const std::vector<std::array<int, 4>>& neighbours;
+  std::vector<std::array<double, 4>> lengths;  // mm, of the edge across each face
+  std::vector<Vec3> centroids;
+  std::vector<double> volumes;  // mm³
+  double volume = 0;            // V_o
+};
+
+// A tetrahedron that a cluster may take next.
+struct Offer {
+  double distance_mm;  // from the cluster's seed through the cluster
+  int tetrahedron;
+  int cluster;
+  bool operator>(const Offer& other) const {
+    return std::tie(distance_mm, tetrahedron, cluster) >
+           std::tie(other.distance_mm, other.tetrahedron, other.cluster);
+  }
+};
+using Offers = std::priority_queue<Offer, std::vector<Offer>, std::greater<>>;
+
+void offer_neighbours(const DualGraph& graph, const std::vector<int>& owner, const Offer& taken,
+                      Offers& offers) {
+  for (int face = 0; face < 4; ++face) {
+    const int across = graph.neighbours[taken.tetrahedron][face];
+    if (across >= 0 && owner[across] == kUnassigned)
+      offers.push({taken.distance_mm + graph.lengths[taken.tetrahedron][face], across,
+                   taken.cluster});
+  }
+}
+
+// Grows one cluster from a seed over unassigned tetrahedra until it holds `target` mm³; `taken` gets
+// its tetrahedra. False where the room ended before.
+bool grow_one(const DualGraph& graph, int seed, int cluster, double target, std::vector<int>& owner,
+              std::vector<int>& taken) {
+  Offers offers;
+  offers.push({0, seed, cluster});
+  double volume = 0;
+  taken.clear();
+  while (!offers.empty() && volume < target) {
+    const Offer offer = offers.top();
+    offers.pop();
+    if (owner[offer.tetrahedron] != kUnassigned) continue;
+    owner[offer.tetrahedron] = cluster;
+    taken.push_back(offer.tetrahedron);
+    volume += graph.volumes[offer.tetrahedron];
+    offer_neighbours(graph, owner, offer, offers);
+  }
+  return volume >= target;
+}
+
+// Parallel growth: all clusters at once until everything reachable is assigned.
+std::vector<int> grow_all(const DualGraph& graph, const std::vector<int>& seeds) {
+  std::vector<int> owner(graph.count(), kUnassigned);
+  Offers offers;
+  for (int cluster = 0; cluster < static_cast<int>(seeds.size()); ++cluster)
+    offers.push({0, seeds[cluster], cluster});
+  while (!offers.empty()) {
+    const Offer offer = offers.top();
+    offers.pop();
+    if (owner[offer.tetrahedron] != kUnassigned) continue;
+    owner[offer.tetrahedron] = offer.cluster;
+    offer_neighbours(graph, owner, offer, offers);
+  }
+  return owner;
+}
+
+struct Centres {
+  std::vector<Vec3> of_mass;
+  std::vector<int> tetrahedra;  // of the cluster, nearest to its centre of mass
+};
+
+Centres centres(const DualGraph& graph, const std::vector<int>& owner, std::size_t clusters) {
+  Centres result{std::vector<Vec3>(clusters, Vec3::Zero()), std::vector<int>(clusters, -1)};
+  std::vector<double> volumes(clusters, 0);
+  for (int t = 0; t < graph.count(); ++t) {
+    if (owner[t] < 0) continue;
+    result.of_mass[owner[t]] += graph.volumes[t] * graph.centroids[t];
+    volumes[owner[t]] += graph.volumes[t];
+  }
+  for (std::size_t i = 0; i < clusters; ++i) result.of_mass[i] /= volumes[i];
+  std::vector<double> nearest(clusters, std::numeric_limits<double>::infinity());
+  for (int t = 0; t < graph.count(); ++t) {
+    if (owner[t] < 0) continue;
+    const double distance = (graph.centroids[t] - result.of_mass[owner[t]]).squaredNorm();
+    if (distance >= nearest[owner[t]]) continue;
+    nearest[owner[t]] = distance;
+    result.tetrahedra[owner[t]] = t;
+  }
+  return result;
+}
+
+// Random sequential seeding. A seed that finds too little room has filled a whole pocket, which is
+// then left out: it is marked so that nobody tries there again.
+std::vector<int> sequential_seeds(const DualGraph& graph, int clusters, Random& random,
+                                  const Progress& progress) {
+  const double target = graph.volume / clusters;
+  constexpr int kPocket = -2;
+  std::vector<int> owner(graph.count(), kUnassigned);
+  std::vector<int> order(graph.count());
+  for (int t = 0; t < graph.count(); ++t) order[t] = t;
+  random.shuffle(order);  // the next unassigned one in a random order is a random unassigned one
+  std::vector<int> taken;
+  int count = 0;
+  for (const int start : order) {
+    if (owner[start] != kUnassigned) continue;
+    progress.check();
+    if (grow_one(graph, start, count, target, owner, taken))
+      ++count;
+    else
+      for (const int t : taken) owner[t] = kPocket;
+  }
+  return centres(graph, owner, count).tetrahedra;
+}
+
+// A component of the mesh without any seed would stay unassigned: it becomes one cluster.
+void seed_remaining_components(const DualGraph& graph, std::vector<int>& seeds) {
+  const double no_limit = std::numeric_limits<double>::infinity();
+  std::vector<int> owner = grow_all(graph, seeds);
+  std::vector<int> taken;
+  for (int t = 0; t < graph.count(); ++t) {
+    if (owner[t] != kUnassigned) continue;
+    grow_one(graph, t, static_cast<int>(seeds.size()), no_limit, owner, taken);
+    seeds.push_back(t);
+  }
+}
+
+Segments clustered(const DualGraph& graph, std::vector<int> seeds, const ShapeSettings& settings,
+                   const Progress& progress) {
+  Segments segments;
+  segments.count = static_cast<int>(seeds.size());
+  std::vector<Vec3> before;
+  for (const int seed : seeds) before.push_back(graph.centroids[seed]);
+  for (int round = 0; round < std::max(1, settings.cluster_rounds); ++round) {
+    progress.report("segmenting", static_cast<double>(round) / settings.cluster_rounds);
+    segments.of_tetrahedron = grow_all(graph, seeds);
+    Centres now = centres(graph, segments.of_tetrahedron, seeds.size());
+    double moved_mm = 0;
+    for (std::size_t i = 0; i < seeds.size(); ++i)
+      moved_mm = std::max(moved_mm, (now.of_mass[i] - before[i]).norm());
+    if (moved_mm < settings.cluster_epsilon_mm || now.tetrahedra == seeds) break;
+    before = std::move(now.of_mass);
+    seeds = std::move(now.tetrahedra);
+  }
+  return segments;
+}
+
+}  // namespace
+
+Segments segment(TetMesh& mesh, const ShapeSettings& settings, std::uint64_t seed,
+                 const Progress& progress) {
+  if (mesh.count() == 0)
+    throw Error(Fault::kBadInput, "The model holds no volume that could be divided",
+                "Check that the model is a closed solid.");
+  Segments segments;
+  {
+    const DualGraph graph(mesh);
+    Random random(seed);
+    std::vector<int> seeds =
+        sequential_seeds(graph, std::max(1, settings.clusters), random, progress);
+    seed_remaining_components(graph, seeds);
+    segments = clustered(graph, std::move(seeds), settings, progress);
+  }
+  make_manifold(mesh, segments, progress, kFreeReach);
+  straighten_cuts(mesh, segments, progress);
+  progress.report("segmenting", 1);
+  return segments;
+}
+
+}  // namespace packmerger
