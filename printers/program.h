@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "model/printer.h"
 #include "model/tray.h"
+#include "model/warning.h"
 
 namespace packmerger {
 
@@ -14,6 +15,7 @@ struct Program {
   std::string extension;  // "gcode" or "x3g"
   std::string bytes;      // the file
   std::string gcode;      // what it was made of; the same as bytes for dialect gcode
+  Warnings warnings;      // skirt_left_out
 };
 
 // Slices the tray with the profile's start and end text, checks every move against the build

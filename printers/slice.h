@@ -28,8 +28,15 @@ struct SlicedTray {
   double model_g = 0;
   double support_mm3 = 0;  // extruded as support and support interface
   double support_g = 0;
+  bool skirt_left_out = false;  // the profile asks for one, and it has no room
 };
 
+// The room to leave on each side of a tray's contents, seen from above, so that support stays on
+// the plate: slicers let it reach past the part it holds. 0 where nothing is sliced or supported.
+double slicer_margin_mm(const Profile& profile);
+
+// Where the contents stand too near the sides of the build volume, support's broader first layer
+// is made narrower and the skirt left out; the program is checked all the same.
 // Needs no display, no HOME and no other environment. Throws Error{kUnavailable} when PrusaSlicer
 // is not installed, kBadInput when the contents leave the build volume, do not stand on the plate
 // or cannot be sliced (with the slicer's message), kBadProfile when the slicer does not know an

@@ -1,0 +1,69 @@
+#include "printers/gcode_line.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace packmerger {
+namespace {
+
+bool is_space(char c) { return c == ' ' || c == '\t'; }
+char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+
+void skip_spaces_and_brackets(std::string_view& text) {
+  for (;;) {
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    if (text.empty() || text.front() != '(') return;
+    const std::size_t end = text.find(')');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+}
+
+// Takes a number off the front: "-1.5", "+2", ".2". Empty when there is none.
+std::optional<double> take_number(std::string_view& text) {
+  std::string_view rest = text;
+  if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
+  double number = 0;
+  const auto [end, fault] = std::from_chars(rest.data(), rest.data() + rest.size(), number,
+                                            std::chars_format::fixed);
+  if (fault != std::errc() || !std::isfinite(number)) return std::nullopt;
+  text = rest.substr(static_cast<std::size_t>(end - rest.data()));
+  return number;
+}
+
+}  // namespace
+
+GcodeLine::GcodeLine(std::string_view text) {
+  text = text.substr(0, text.find(';'));
+  text = text.substr(0, text.find('*'));
+  for (skip_spaces_and_brackets(text); !text.empty(); skip_spaces_and_brackets(text)) {
+    const char word = upper(text.front());
+    if (word < 'A' || word > 'Z') {
+      readable_ = false;
+      return;
+    }
+    text.remove_prefix(1);
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    const std::optional<double> number = take_number(text);
+    if (letter_ == 0 && word == 'N') continue;
+    if (letter_ == 0 && (word == 'G' || word == 'M' || word == 'T') && number &&
+        *number >= 0 && *number < 1e6) {
+      letter_ = word;
+      number_ = static_cast<int>(*number);
+      sub_number_ = static_cast<int>(std::lround((*number - number_) * 10));
+      continue;
+    }
+    const std::uint32_t bit = 1U << (word - 'A');
+    present_ |= bit;
+    if (!number) continue;
+    valued_ |= bit;
+    values_[word - 'A'] = *number;
+  }
+  if (letter_ == 0 && present_ != 0) readable_ = false;
+}
+
+std::optional<double> GcodeLine::value(char word) const {
+  if ((valued_ >> (word - 'A') & 1U) == 0) return std::nullopt;
+  return values_[word - 'A'];
+}
+
+}  // namespace packmerger

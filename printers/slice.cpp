@@ -1,0 +1,215 @@
+#include "printers/slice.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "base/files.h"
+#include "base/process.h"
+#include "printers/check_moves.h"
+#include "printers/estimate.h"
+#include "printers/gcode_line.h"
+#include "printers/slicer_settings.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kTimeoutS = 3600;
+constexpr std::uint64_t kMaxGcodeBytes = std::uint64_t{4} << 30;
+constexpr double kOutsideMm = 0.01;  // what rounding may put a part outside by
+
+void append_float(std::string& bytes, double value) {
+  static_assert(std::endian::native == std::endian::little, "STL is little-endian");
+  const float narrow = static_cast<float>(value);
+  bytes.append(reinterpret_cast<const char*>(&narrow), sizeof narrow);
+}
+
+// All shells as one binary STL, moved by shift. Normals are left zero, as the format allows.
+std::string binary_stl(const Tray& tray, const Vec3& shift) {
+  std::uint32_t count = 0;
+  for (const Mesh& part : tray.parts) count += static_cast<std::uint32_t>(part.n_faces());
+  std::string bytes(80, '\0');
+  bytes.reserve(84 + std::size_t{50} * count);
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  for (const Mesh& part : tray.parts) {
+    for (const auto face : part.faces()) {
+      bytes.append(12, '\0');
+      for (const Vec3& corner : corners(part, face))
+        for (int axis = 0; axis < 3; ++axis) append_float(bytes, corner[axis] + shift[axis]);
+      bytes.append(2, '\0');
+    }
+  }
+  return bytes;
+}
+
+Box3 contents_box(const Tray& tray) {
+  Box3 box;
+  for (const Mesh& part : tray.parts) box.extend(bounding_box(part));
+  if (box.isEmpty())
+    throw Error(Fault::kBadInput, "The tray is empty", "Put at least one part on it.");
+  return box;
+}
+
+// The slicer neither notices parts outside its bed nor keeps an object above the plate.
+void check_contents(const Profile& profile, const Box3& box) {
+  const Vec3 build = profile.build();
+  if ((box.min().array() < -kOutsideMm).any() ||
+      (box.max().array() > build.array() + kOutsideMm).any())
+    throw Error(Fault::kBadInput,
+                fmt::format("The tray's contents reach from ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, "
+                            "{:.2f}, {:.2f}) mm and leave the build volume of {:g} × {:g} × {:g} mm",
+                            box.min().x(), box.min().y(), box.min().z(), box.max().x(),
+                            box.max().y(), box.max().z(), build.x(), build.y(), build.z()),
+                "Scale the model down, split it, or choose a larger printer.");
+  if (box.min().z() > kOutsideMm)
+    throw Error(Fault::kBadInput,
+                fmt::format("Nothing stands on the plate: the lowest part is {:.2f} mm above it",
+                            box.min().z()),
+                "Lower the tray's contents to z = 0.");
+}
+
+// "1d 2h 3m 4s" → seconds.
+double seconds_of(std::string_view text) {
+  double total = 0;
+  while (!text.empty()) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    int value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc() || end == text.data() + text.size()) break;
+    const std::map<char, int> units{{'d', 86400}, {'h', 3600}, {'m', 60}, {'s', 1}};
+    const auto unit = units.find(*end);
+    if (unit != units.end()) total += value * unit->second;
+    text.remove_prefix(static_cast<std::size_t>(end + 1 - text.data()));
+  }
+  return total;
+}
+
+// What follows `label` on the last line that holds it.
+std::string_view after(std::string_view gcode, std::string_view label) {
+  const std::size_t at = gcode.rfind(label);
+  if (at == std::string_view::npos)
+    throw Error(Fault::kInternal,
+                fmt::format("PrusaSlicer's G-code lacks \"{}\"", label),
+                "Install the PrusaSlicer that comes with Debian 12 (2.5.0).");
+  const std::string_view rest = gcode.substr(at + label.size());
+  return rest.substr(0, rest.find('\n'));
+}
+
+// mm of filament pushed out while an axis moves, for everything but support, and for support.
+// Retractions and their returns move the filament alone and do not count.
+struct Extruded {
+  double model_mm = 0;
+  double support_mm = 0;
+};
+
+Extruded extruded(std::string_view gcode) {
+  constexpr std::string_view kType = ";TYPE:";
+  Extruded sum;
+  bool support = false;
+  double e = 0;
+  for_each_line(gcode, [&](std::string_view text, int) {
+    if (text.starts_with(kType)) {
+      support = text.substr(kType.size()).starts_with("Support material");
+      return true;
+    }
+    const GcodeLine line(text);
+    if (line.letter() != 'G' || !line.value('E')) return true;
+    const double to = *line.value('E');
+    if (!line.is('G', 92) && to > e && (line.has('X') || line.has('Y')))
+      (support ? sum.support_mm : sum.model_mm) += to - e;
+    e = to;
+    return true;
+  });
+  return sum;
+}
+
+void run_slicer(const fs::path& folder, const Progress& progress) {
+  ProcessSpec spec;
+  spec.argv = {"prusa-slicer", "-g", "--load", "settings.ini", "--dont-arrange",
+               "-o",           "tray.gcode", "tray.stl"};
+  spec.set_env = {{"LC_ALL", "C"}};
+  spec.unset_env = {"DISPLAY", "WAYLAND_DISPLAY"};
+  spec.folder = folder;
+  ProcessResult result;
+  try {
+    result = run_process(spec, kTimeoutS, progress);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kUnavailable) throw;
+    throw Error(Fault::kUnavailable, "PrusaSlicer is not installed (no program prusa-slicer)",
+                "Run: apt-get install --no-install-recommends prusa-slicer");
+  }
+  if (result.status.ok() && fs::exists(folder / "tray.gcode")) return;
+  std::string said = result.err.empty() ? result.out : result.err;
+  while (!said.empty() && std::isspace(static_cast<unsigned char>(said.back())) != 0)
+    said.pop_back();
+  if (result.timed_out) said = fmt::format("it took longer than {:.0f} s", kTimeoutS);
+  if (said.empty() && result.status.signal != 0)
+    said = fmt::format("it was ended by signal {}", result.status.signal);
+  const bool settings = said.find("config") != std::string::npos ||
+                        said.find("nvalid value") != std::string::npos ||
+                        said.find("custom G-code") != std::string::npos ||
+                        said.find("nozzle diameter") != std::string::npos;
+  throw Error(settings ? Fault::kBadProfile : Fault::kBadInput,
+              "PrusaSlicer cannot slice the tray: " + said,
+              settings ? "Correct slicer in the profile." : "Repair the model, then try again.");
+}
+
+}  // namespace
+
+SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
+                 const Progress& progress) {
+  const Box3 box = contents_box(tray);
+  check_contents(profile, box);
+  const Vec3 far_room = profile.build() - box.max();
+  const double room_mm =
+      std::min(box.min().head<2>().minCoeff(), far_room.head<2>().minCoeff());
+  const SlicerConfig config = slicer_config(profile, flavour, room_mm);
+
+  progress.report("slicing", 0);
+  const TemporaryFolder folder;
+  write_file_whole(folder.path() / "settings.ini", ini_text(config));
+  write_file_whole(folder.path() / "tray.stl", binary_stl(tray, machine_volume(profile).min()));
+  run_slicer(folder.path(), progress);
+
+  SlicedTray sliced;
+  sliced.skirt_left_out = config.skirt_left_out;
+  sliced.gcode = read_file(folder.path() / "tray.gcode", kMaxGcodeBytes);
+  const std::map<std::string, std::string> used = settings_used(sliced.gcode);
+  check_settings_used(profile, used);
+  sliced.time_s = seconds_of(after(sliced.gcode, "; estimated printing time (normal mode) = "));
+  const double diameter_mm = std::stod(used.at("filament_diameter"));
+  const double section_mm2 = std::numbers::pi * diameter_mm * diameter_mm / 4;
+  const Extruded length = extruded(sliced.gcode);
+  sliced.model_mm3 = length.model_mm * section_mm2;
+  sliced.model_g = sliced.model_mm3 / 1000 * profile.material.model_density_g_cm3;
+  sliced.support_mm3 = length.support_mm * section_mm2;
+  sliced.support_g = sliced.support_mm3 / 1000 * profile.material.support_density_g_cm3;
+  progress.report("slicing", 1);
+  return sliced;
+}
+
+Estimate estimate_by_slicer(const Profile& profile, const std::vector<Tray>& trays,
+                            const Assembly& assembly, const Progress& progress) {
+  Estimate sum;
+  sum.source = EstimateSource::kSlicer;
+  sum.trays = static_cast<int>(trays.size());
+  for (const Tray& tray : trays) {
+    const SlicedTray sliced = slice(profile, tray, SliceFlavour::kFigures, progress);
+    sum.time_s += sliced.time_s + profile.fdm.start_s;
+    sum.model_mm3 += sliced.model_mm3;
+    sum.model_g += sliced.model_g;
+    sum.support_mm3 += sliced.support_mm3;
+    sum.support_g += sliced.support_g;
+  }
+  price(sum, profile, assembly);
+  return sum;
+}
+
+}  // namespace packmerger
