@@ -1,0 +1,28 @@
+// The plate, its grid and the build volume, as preview.png shows them. For this folder only.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "offscreen/offscreen.h"
+
+namespace packmerger {
+
+// A scene together with the meshes made for it, which its SceneMesh entries point to.
+struct OwnedScene {
+  Scene scene;
+  std::vector<std::unique_ptr<Mesh>> meshes;
+};
+
+// Adds a plate that covers the box's footprint, its upper side at z = 0, with a line every 10 mm
+// and a stronger one every 50 mm (every 1 and 5 mm where the box is smaller than 50 mm).
+void add_plate(OwnedScene& scene, const Box3& box);
+
+// Adds the twelve edges of the box.
+void add_volume(OwnedScene& scene, const Box3& box);
+
+// Adds a mesh and the shadow it throws on z = 0, as far as the shadow falls on the plate.
+void add_standing(OwnedScene& scene, const Mesh& mesh, const Pose& pose, const Colour& colour,
+                  const Box3& plate);
+
+}  // namespace packmerger

@@ -1,0 +1,29 @@
+// job.json and the comparison, as docs/JOB_FOLDER describes them: mm, mm³, g, s.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "model/job.h"
+
+namespace packmerger {
+
+// {"as_is": E, "solid": E, "hollow": E, "packed": E}; where it does not fit, E is
+// {"fits": false} with every other figure null.
+nlohmann::json comparison_json(const Comparison& comparison);
+
+// The whole report. Number arrays and keys are those of docs/JOB_FOLDER. Bytes that are not UTF-8
+// in a file's name are replaced when it is dumped with json_text().
+nlohmann::json job_json(const Job& job);
+
+// Indented by two, ending in a line end. Never throws for strings that are not UTF-8.
+std::string json_text(const nlohmann::json& json);
+
+// "parts/07.stl", as job.json names a part's file.
+std::string part_file(int id);
+
+// "tray.stl" for tray 1, "tray-2.stl" for tray 2: how every file of one tray is named.
+std::string tray_file(const std::string& stem, int tray, const std::string& extension);
+
+}  // namespace packmerger
