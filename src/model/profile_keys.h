@@ -1,5 +1,5 @@
 // The keys of a printer profile, each named once: reader, --set, writer and documentation all walk
-// this list. For printer.cpp and profile_toml.cpp only; everyone else includes model/printer.h.
+// this list, and so does job.json. Everyone else includes model/printer.h.
 #pragma once
 
 #include <array>

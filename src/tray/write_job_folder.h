@@ -20,8 +20,8 @@ struct TrayFiles {
 
 // Writes job.json, profile.toml, tray.3mf, tray.stl, parts/, preview.glb, assembly.glb, preview.png
 // and the programs into a temporary sibling of `out` and renames it: afterwards `out` is whole, or
-// it is absent. trays: one entry per tray, in order. `out` is a path that does not exist in a folder
-// that does.
+// it is absent. trays: one entry per tray, in order. `out` is a path that does not exist in a
+// folder that does.
 //
 // Throws Error{kCannotWrite} when out exists or cannot be written, Error{kBadInput} when a part
 // cannot be written as a closed binary STL (its numbers are too large for 32-bit floats),

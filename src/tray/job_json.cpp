@@ -1,0 +1,159 @@
+#include "tray/job_json.h"
+
+#include <fmt/format.h>
+
+#include "base/files.h"
+#include "model/profile_keys.h"
+
+namespace packmerger {
+namespace {
+
+using Json = nlohmann::json;
+
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json estimate_json(const std::optional<Estimate>& estimate) {
+  if (!estimate) {
+    Json none = {{"fits", false}};
+    for (const char* key : {"time_s", "model_mm3", "model_g", "support_mm3", "support_g", "cost",
+                            "currency", "parts", "trays", "assembly_min", "source"})
+      none[key] = nullptr;
+    return none;
+  }
+  return {{"fits", true},
+          {"time_s", estimate->time_s},
+          {"model_mm3", estimate->model_mm3},
+          {"model_g", estimate->model_g},
+          {"support_mm3", estimate->support_mm3},
+          {"support_g", estimate->support_g},
+          {"cost", estimate->cost},
+          {"currency", estimate->currency},
+          {"parts", estimate->parts},
+          {"trays", estimate->trays},
+          {"assembly_min", estimate->assembly_min},
+          {"source", estimate->source == EstimateSource::kSlicer ? "slicer" : "model"}};
+}
+
+struct SettingJson {
+  Json operator()(const NumberKey& key) const { return *key.value; }
+  Json operator()(const IntegerKey& key) const { return *key.value; }
+  Json operator()(const TextKey& key) const { return *key.value; }
+  Json operator()(const ChoiceKey& key) const { return key.names[key.get()]; }
+  Json operator()(const Numbers3Key& key) const { return *key.value; }
+  Json operator()(const TextsKey& key) const { return *key.value; }
+  Json operator()(const TextTableKey& key) const { return *key.value; }
+};
+
+// Every key of the profile that stands above its tables, but not what the machine is called.
+Json settings_json(Profile profile) {
+  Json settings = Json::object();
+  for (const Key& key : keys_of(profile))
+    if (key.name.find('.') == std::string::npos && key.name != "id" && key.name != "name")
+      settings[key.name] = std::visit(SettingJson{}, key.kind);
+  return settings;
+}
+
+Json transform_json(const Pose& pose) {
+  Json numbers = Json::array();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) numbers.push_back(pose(row, column));
+  return numbers;
+}
+
+Json part_json(const JobPart& part) {
+  Json neighbours = Json::array();
+  for (const JobNeighbour& neighbour : part.neighbours)
+    neighbours.push_back({{"id", neighbour.id}, {"glue_area_mm2", neighbour.glue_area_mm2}});
+  return {{"id", part.id},
+          {"model", part.model},
+          {"tray", part.tray},
+          {"file", part_file(part.id)},
+          {"volume_mm3", part.volume_mm3},
+          {"transform", transform_json(part.pose)},
+          {"neighbours", neighbours}};
+}
+
+Json inputs_json(const std::vector<JobInput>& inputs) {
+  Json list = Json::array();
+  for (const JobInput& input : inputs)
+    list.push_back({{"file", input.file}, {"sha256", input.sha256}, {"scale", input.scale}});
+  return list;
+}
+
+Json removal_paths_json(const std::map<int, std::vector<Vec3>>& paths) {
+  Json all = Json::object();
+  for (const auto& [id, steps] : paths) {
+    Json path = Json::array();
+    for (const Vec3& step : steps) path.push_back(vector_json(step));
+    all[std::to_string(id)] = path;
+  }
+  return all;
+}
+
+Json printer_json(const Profile& profile) {
+  const Json settings = settings_json(profile);
+  return {{"name", profile.name},
+          {"technology", settings["technology"]},
+          {"dialect", settings["dialect"]},
+          {"build_mm", profile.build_mm},
+          {"support_angle_deg", profile.support_angle_deg}};
+}
+
+Json packing_json(const Job& job) {
+  return {{"weight", job.profile.pack.weight},  {"cost", job.cost},
+          {"bbox_mm3", job.bbox_mm3},           {"support_mm3", job.support_mm3},
+          {"height_mm", job.height_mm},         {"gap_mm", job.profile.pack.gap_mm},
+          {"grid_mm", job.profile.pack.grid_mm}};
+}
+
+}  // namespace
+
+Json comparison_json(const Comparison& comparison) {
+  return {{"as_is", estimate_json(comparison.as_is)},
+          {"solid", estimate_json(comparison.solid)},
+          {"hollow", estimate_json(comparison.hollow)},
+          {"packed", estimate_json(comparison.packed)}};
+}
+
+Json job_json(const Job& job) {
+  Json report = {
+      {"version", 1},
+      {"inputs", inputs_json(job.inputs)},
+      {"profile", {{"id", job.profile.id}, {"sha256", sha256_hex(profile_toml(job.profile))}}},
+      {"seed", job.seed},
+      {"variant", job.variant},
+      {"settings", settings_json(job.profile)},
+      {"printer", printer_json(job.profile)},
+      {"shell", {{"volume_mm3", job.shell_volume_mm3}, {"wall_mm", job.profile.shape.wall_mm}}},
+      {"segments",
+       {{"tetrahedra", job.tetrahedra},
+        {"clusters", job.clusters},
+        {"after_premerge", job.after_premerge},
+        {"final", job.final_segments}}},
+      {"packing", packing_json(job)},
+      {"parts", Json::array()},
+      {"removal_order", job.removal_order},
+      {"estimates", comparison_json(job.estimates)},
+      {"timings_s", Json::object()},
+      {"warnings", Json::array()}};
+  for (const JobPart& part : job.parts) report["parts"].push_back(part_json(part));
+  if (!job.removal_paths.empty()) report["removal_path"] = removal_paths_json(job.removal_paths);
+  if (job.resample_tolerance_mm) report["resample_tolerance_mm"] = *job.resample_tolerance_mm;
+  for (const auto& [stage, seconds] : job.timings_s) report["timings_s"][stage] = seconds;
+  for (const Warning& warning : job.warnings)
+    report["warnings"].push_back({{"code", warning.code}, {"text", warning.text}});
+  return report;
+}
+
+std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string part_file(int id) { return fmt::format("parts/{:02}.stl", id); }
+
+std::string tray_file(const std::string& stem, int tray, const std::string& extension) {
+  if (tray == 1) return stem + "." + extension;
+  return fmt::format("{}-{}.{}", stem, tray, extension);
+}
+
+}  // namespace packmerger
