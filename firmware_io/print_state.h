@@ -30,7 +30,7 @@ using PrintListener = std::function<void(const PrintReport&)>;
 struct StreamOptions {
   double timeout_s = 30;   // silence after which the printer counts as gone
   double boot_wait_s = 2;  // after opening, for boards that reset
-  std::string build_name;  // shown by printers that can; cut to what they take
+  std::string build_name;  // shown by the printer where the program names no build; may be cut
   std::string safe_gcode;  // G-code: sent after a failure or a cancel; heaters off
 };
 

@@ -16,8 +16,8 @@ void check_x3g(std::string_view program);
 
 // Prints the program and returns when the printer has executed all of it and says that its build
 // is finished. Checks the program first, then the firmware (version query) and its build state.
-// The build is named options.build_name, whatever the program's own build start says; a program
-// without build start or build end gets them. Progress counts the program's bytes.
+// The program is sent as it is; only where it has no build start (build end) is one put before
+// (after) it, named options.build_name. Progress counts the program's bytes.
 // Throws
 //   Error{kBadInput}     as check_x3g;
 //   Error{kUnavailable}  nothing that speaks s3g answers;

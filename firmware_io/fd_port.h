@@ -1,0 +1,50 @@
+// A byte channel over an open terminal: what the serial and the termios channel have in common.
+#pragma once
+
+#include <string>
+
+#include "firmware_io/port.h"
+
+namespace packmerger {
+
+// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
+  Descriptor& operator=(Descriptor&&) = delete;
+  ~Descriptor();
+
+  int get() const { return fd_; }
+  int release();
+
+ private:
+  int fd_;
+};
+
+// Reads and writes a configured, non-blocking terminal; does not close it.
+class FdPort : public Port {
+ public:
+  std::size_t read(char* data, std::size_t size, double timeout_s) override;
+  std::size_t write(std::string_view bytes, double timeout_s) override;
+  std::string name() const override { return name_; }
+
+ protected:
+  FdPort(std::string name, int fd) : name_(std::move(name)), fd_(fd) {}
+
+ private:
+  bool wait(short events, double timeout_s) const;
+
+  std::string name_;
+  int fd_;
+};
+
+// Both take the locked port and throw as open_port() does. `path` is resolved, `name` is for people.
+// open_serial_port returns nothing where libserialport does not take the terminal for a serial port.
+std::unique_ptr<Port> open_serial_port(const std::string& path, const std::string& name, int baud,
+                                       Descriptor& lock);
+std::unique_ptr<Port> open_termios_port(const std::string& name, int baud, Descriptor lock);
+
+}  // namespace packmerger

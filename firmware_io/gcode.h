@@ -1,0 +1,67 @@
+// The bytes of RepRap G-code over a serial line, after Marlin's source: commands of a program,
+// numbered lines with checksums, and what a printer's reply means. No port is known here.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace packmerger {
+
+struct GcodeCommand {
+  std::string_view text;  // without comment and surrounding space
+  std::size_t line = 0;   // in the program, from 1
+};
+
+// The commands of a program in order; comments and empty lines are left out, because Marlin gives
+// an empty line no answer. The views point into `program`.
+std::vector<GcodeCommand> gcode_commands(std::string_view program);
+
+// Throws Error{kBadInput} as check_gcode() promises.
+void check_gcode_commands(const std::vector<GcodeCommand>& commands);
+
+// "N1 G28*18\n": the checksum is the exclusive or of every byte before the asterisk.
+std::string numbered_gcode(std::size_t number, std::string_view command);
+
+// The first word of a command: "G1" of "G1 X10", "M109" of "M109 S200".
+std::string_view gcode_word(std::string_view command);
+
+bool is_heating(std::string_view command);     // blocks until a temperature is reached
+bool is_long(std::string_view command);        // may block long: homing, dwelling, waiting for moves
+bool waits_for_user(std::string_view command); // M0 or M1 without a time
+
+enum class GcodeReplyKind {
+  kOk,
+  kResend,       // number: the line asked for
+  kBusy,         // alive; `waiting` where the printer waits for its user
+  kIdle,         // "wait": alive and nothing queued
+  kStart,        // booted: whatever was printing is lost
+  kHalted,       // dead until it is reset
+  kThermal,      // a heater failed; the printer may still listen
+  kTemperature,  // a report that is no ok
+  kPosition,     // "X:… Y:… Z:…", what M114 answers
+  kPrompt,       // text: the question
+  kFirmware,     // the answer to M115
+  kCapability,   // text: "NAME:0" or "NAME:1"
+  kCard,         // the answer to M27; `waiting` where it prints from its card
+  kOther
+};
+
+struct GcodeReply {
+  GcodeReplyKind kind = GcodeReplyKind::kOther;
+  std::string text;              // the whole line unless said otherwise above
+  std::size_t number = 0;
+  bool waiting = false;
+  bool has_temperature = false;  // of kOk: the answer to M105
+  bool has_position = false;     // of kOk: M114 answered on one line
+  bool has_firmware = false;     // of kOk: M115 answered on one line
+};
+
+// `line` without its line ending. Anything unknown is kOther, never an error.
+GcodeReply read_gcode_reply(std::string_view line);
+
+// Longest line that Marlin takes, numbering and checksum included, the line ending not.
+inline constexpr std::size_t kMaxGcodeLine = 95;
+
+}  // namespace packmerger

@@ -1,0 +1,73 @@
+#include "firmware_io/gcode_link.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "firmware_io/conversation.h"
+#include "firmware_io/gcode.h"
+#include "firmware_io/gcode_channel.h"
+#include "firmware_io/gcode_stream.h"
+
+namespace packmerger {
+
+namespace {
+
+void refuse_unanswerable_pauses(const std::vector<GcodeCommand>& commands,
+                                const GcodeAbilities& abilities) {
+  if (abilities.prompts) return;
+  for (const GcodeCommand& command : commands)
+    if (waits_for_user(command.text))
+      throw Error(Fault::kUnavailable,
+                  "Line " + std::to_string(command.line) +
+                      " of the program waits for a person, and this printer cannot ask one",
+                  "Remove M0 and M1 from the program, or enable host prompts in the firmware.");
+}
+
+// After a failure the line count is unknown, so these go without numbers; no answer is insisted on.
+void send_safe_text(GcodeChannel& channel, const std::string& safe_gcode) {
+  constexpr double kPatience_s = 1;
+  try {
+    for (const GcodeCommand& command : gcode_commands(safe_gcode)) {
+      channel.send(command.text);
+      const double end = channel.now_s() + kPatience_s;
+      while (channel.now_s() < end) {
+        const auto reply = channel.receive(end - channel.now_s());
+        if (!reply || reply->kind == GcodeReplyKind::kOk) break;
+        if (reply->kind == GcodeReplyKind::kHalted || reply->kind == GcodeReplyKind::kStart) return;
+      }
+    }
+  } catch (const Error&) {
+    // The port is gone; the failure that led here is what the user must read.
+  }
+}
+
+}  // namespace
+
+void check_gcode(std::string_view program) { check_gcode_commands(gcode_commands(program)); }
+
+void print_gcode(Port& port, std::string_view program, const StreamOptions& options,
+                 const PrintListener& listener, PrintControl& control) {
+  const std::vector<GcodeCommand> commands = gcode_commands(program);
+  check_gcode_commands(commands);
+  Reporter reporter(port, listener, commands.size());
+  GcodeChannel channel(port);
+  const GcodeAbilities abilities = connect_gcode(channel, options, control);
+  refuse_unanswerable_pauses(commands, abilities);
+
+  std::vector<std::string> texts;
+  texts.reserve(commands.size());
+  for (const GcodeCommand& command : commands) texts.emplace_back(command.text);
+  GcodeStream stream(channel, std::move(texts), options, abilities, reporter, control);
+  try {
+    stream.run();
+  } catch (...) {
+    if (stream.may_send()) send_safe_text(channel, options.safe_gcode);
+    throw;
+  }
+  if (stream.was_cancelled()) throw Error(Fault::kInterrupted, "The print was cancelled", "");
+  reporter.state(PrintState::kDone);
+}
+
+}  // namespace packmerger

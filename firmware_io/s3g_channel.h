@@ -1,0 +1,79 @@
+// One packet, one reply: the s3g exchange over a port, and which answers end a print.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "firmware_io/port.h"
+#include "firmware_io/s3g.h"
+
+namespace packmerger::s3g {
+
+enum class Verdict {
+  kAccepted,  // in the printer's buffer
+  kFull,      // dropped whole: wait for room
+  kRejected,  // never understood: send it again
+  kUnclear    // the answer got lost: it may have been taken or not
+};
+
+struct Statistics {
+  BuildState state = BuildState::kNone;
+  std::uint32_t actions = 0;  // executed since the build start, it not counted
+};
+
+class Channel {
+ public:
+  // A reply is waited for at most a fifth of timeout_s and at most one second.
+  Channel(Port& port, double timeout_s);
+
+  // A query is repeated up to five times. Returns what follows the response code; throws Error{kIo}
+  // when nothing intact comes or the printer answers that its build is over.
+  std::string query(std::string_view payload, std::size_t reply_size);
+
+  std::uint32_t free_buffer();
+  bool is_finished();
+  std::uint8_t board_status();
+  Statistics statistics();
+  // tool: index; query_code: 0x02 or 0x20 (tool's temperature, target), 0x1E or 0x21 (platform's).
+  int temperature(std::uint8_t tool, std::uint8_t query_code);
+
+  // Sends an action once. Throws Error{kIo} for answers that end a print.
+  Verdict try_action(std::string_view payload);
+
+  // True when an answer came that nothing was waiting for: a packet may have been taken twice.
+  bool heard_too_much() const { return heard_too_much_; }
+  void forget_too_much() { heard_too_much_ = false; }
+
+  // A build that was cancelled is reported once to whoever speaks next.
+  void tolerate_cancelled(bool tolerate) { tolerate_cancelled_ = tolerate; }
+
+  // False once the printer said why it stopped; it must not be disturbed then.
+  bool may_abort() const { return may_abort_; }
+
+  void pause(double seconds);  // listening
+  void resynchronize();        // reads until the line is quiet, and forgets what came
+
+  double now_s() const { return port_.now_s(); }
+  std::string name() const { return port_.name(); }
+
+ private:
+  enum class Outcome { kReply, kSilence, kGarbled, kNoise };
+  using Expected = std::function<bool(const Reply&)>;
+
+  Outcome exchange(std::string_view payload, const Expected& expected, std::string& reply);
+  bool listen(double timeout_s);
+  void notice_unexpected();
+  void throw_if_over(std::uint8_t code);
+
+  Port& port_;
+  double reply_wait_s_;
+  ReplyReader reader_;
+  bool heard_too_much_ = false;
+  bool tolerate_cancelled_ = false;
+  bool may_abort_ = true;
+};
+
+}  // namespace packmerger::s3g

@@ -1,0 +1,63 @@
+// One build on a printer that speaks s3g: filling its buffer, watching what it makes of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_io/conversation.h"
+#include "firmware_io/print_state.h"
+#include "firmware_io/s3g_channel.h"
+
+namespace packmerger::s3g {
+
+// The rules, and why, are in docs/PROTOCOLS, "Streaming x3g".
+class Print {
+ public:
+  Print(Channel& channel, Reporter& reporter, PrintControl& control);
+
+  // Waits for the board and makes sure that it speaks s3g and is not building. Throws
+  // Error{kUnavailable}, {kBusy} or {kInterrupted}; the printer was not touched then.
+  void connect(double boot_wait_s);
+
+  // Streams the actions, build start and build end among them, and returns when the printer says
+  // that its build is finished. counted[i]: bytes of the program done with action i. Throws
+  // Error{kIo}, or Error{kInterrupted} after a cancel that the printer carried out.
+  void run(const std::vector<std::string_view>& actions, const std::vector<std::size_t>& counted);
+
+  // Best effort after a failure: stops the machine, heaters off.
+  void abort_quietly();
+
+ private:
+  void send(std::size_t index);
+  void note_accepted(std::size_t index);
+  bool was_taken(std::size_t index);
+  void check_nothing_taken_twice();
+  void wait_for_room(std::size_t size);
+  Statistics drained_statistics();
+  void finish();
+  void obey();
+  void cancel();
+  void watch();
+  void judge(const Statistics& statistics);
+  void show(const Statistics& statistics, std::uint8_t board_status);
+  std::string heating_text(std::string_view action);
+
+  Channel& channel_;
+  Reporter& reporter_;
+  PrintControl& control_;
+  const std::vector<std::string_view>* actions_ = nullptr;
+
+  std::uint32_t capacity_ = 0;       // of the printer's buffer, bytes
+  std::size_t start_ = 0;            // index of the build start that was accepted last
+  std::uint32_t after_start_ = 0;    // actions accepted since
+  bool started_ = false;             // a build start was accepted
+  bool ended_ = false;               // a build end was accepted
+  bool seen_running_ = false;
+  bool may_abort_ = true;
+  double watched_at_s_ = 0;
+};
+
+}  // namespace packmerger::s3g
