@@ -20,9 +20,12 @@ Mesh closed_mesh(const TriangleSoup& soup) {
   };
   Mesh mesh;
   mesh.reserve(soup.points.size(), soup.triangles.size() * 3 / 2, soup.triangles.size());
-  std::vector<Mesh::VertexHandle> vertices;
-  vertices.reserve(soup.points.size());
-  for (const Vec3& point : soup.points) vertices.push_back(mesh.add_vertex(point));
+  std::vector<bool> used(soup.points.size(), false);
+  for (const std::array<int, 3>& triangle : soup.triangles)
+    for (const int corner : triangle) used[corner] = true;
+  std::vector<Mesh::VertexHandle> vertices(soup.points.size());
+  for (std::size_t i = 0; i < soup.points.size(); ++i)
+    if (used[i]) vertices[i] = mesh.add_vertex(soup.points[i]);
 
   // OpenMesh writes to stderr when it must refuse a face, so what it would refuse is found first
   // by is_boundary tests: each corner needs a gap, each directed edge must be free.
@@ -40,9 +43,6 @@ Mesh closed_mesh(const TriangleSoup& soup) {
   }
   for (const auto edge : mesh.edges())
     if (mesh.is_boundary(edge)) refuse("it has holes");
-  for (const auto vertex : mesh.vertices())
-    if (mesh.is_isolated(vertex)) mesh.delete_vertex(vertex);
-  mesh.garbage_collection();
   return mesh;
 }
 
