@@ -166,6 +166,7 @@ BREAKS = {
     "3MF is no archive": (write("tray.3mf", b"PK nothing"), "is a core 3MF"),
     "profile.toml is broken": (write("profile.toml", b"a = "), "profile.toml parses"),
     "profile.toml of another job": (write("profile.toml", b"gap_mm = 2.0"), "agrees with settings"),
+    "profile.toml is not the one used": (set_at("profile", "sha256", value="b" * 64), "sha256 of profile"),
     "no program": (write("profile.toml", b'dialect = "gcode"'), "every promised file is there"),
     "an empty program": (lambda job: [write("profile.toml", b'dialect = "gcode"')(job),
                                       write("program.gcode", b"; nothing")(job)], "holds a program"),

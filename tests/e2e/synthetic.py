@@ -17,6 +17,7 @@ from checker import meshes
 
 XS, YS, ZS = [0, 3, 20, 37, 40], [0, 3, 27, 30], [0, 3, 17, 20]
 GAP_MM = 1.5
+PROFILE = b'dialect = "handoff"\ntechnology = "polyjet"\ngap_mm = 1.0\n'
 CUT_MM2 = 30 * 20 - 24 * 14
 
 
@@ -168,7 +169,7 @@ def write_job(folder):
     write_glb(job / "assembly.glb", [part_corners(1), part_corners(2)])
     noise = np.random.default_rng(1).integers(0, 256, (200, 320, 3), dtype=np.uint8)
     write_png(job / "preview.png", noise)
-    (job / "profile.toml").write_text('dialect = "handoff"\ntechnology = "polyjet"\ngap_mm = 1.0\n')
+    (job / "profile.toml").write_bytes(PROFILE)
     data = job_data(hashlib.sha256(model.read_bytes()).hexdigest())
     (job / "job.json").write_text(json.dumps(data))
     return job, model
@@ -186,7 +187,7 @@ def job_data(sha256):
               "transform": pose.ravel().tolist(), "neighbours": [{"id": 3 - n, "glue_area_mm2": CUT_MM2}]}
              for n, pose in enumerate(poses(), 1)]
     return {"version": 1, "inputs": [{"file": "box.stl", "sha256": sha256, "scale": 1}],
-            "profile": {"id": "objet30", "sha256": "0" * 64}, "seed": 1, "settings": settings,
+            "profile": {"id": "objet30", "sha256": hashlib.sha256(PROFILE).hexdigest()}, "seed": 1, "settings": settings,
             "printer": {"build_mm": [100, 80, 60], "support_angle_deg": 0},
             "shell": {"volume_mm3": 2 * volume, "wall_mm": 3},
             "segments": {"tetrahedra": 100, "clusters": 10, "after_premerge": 4, "final": 2},

@@ -20,6 +20,7 @@ SHELL_TOLERANCE = 1e-3
 GLUE_TOLERANCE = 0.02
 LEAST_GLUE_MM2 = 1.0      # neighbours that touch less need not be listed
 CAVITY_FRACTION = 0.4     # of wall_mm: a cavity's wall is at least so deep below the model's surface
+SOLID_FRACTION = 0.995    # parts that hold this much of the model's volume have no cavity
 SAMPLE_MM2 = 0.5          # a sample for so much area, at least one a triangle
 MOST_SAMPLES = 400_000
 
@@ -139,6 +140,8 @@ def _check_glue(assembled, number, report):
 def _check_surface(job, assembled, model, number, report):
     tolerance = max(SURFACE_TOLERANCE_MM, job.data.get("resample_tolerance_mm") or 0)
     wall = job.data["shell"]["wall_mm"]
+    matter = sum(meshes.volume(corners) for corners in assembled.corners.values())
+    hollow = wall > 0 and matter < SOLID_FRACTION * meshes.volume(model)
     model_tree = Tree(model)
     rim = open_rim(model)
     kinds = {"model": 0, "cut": 0, "cavity": 0, "hole": 0}
@@ -154,7 +157,7 @@ def _check_surface(job, assembled, model, number, report):
         distance, _ = model_tree.closest(points)
         off = distance > tolerance
         inside = model_tree.winding(points) > 0
-        cavity = off & inside & (distance >= CAVITY_FRACTION * wall) & (wall > 0)
+        cavity = off & inside & (distance >= CAVITY_FRACTION * wall) & hollow
         hole = off & ~cavity & _nearest_is(rim, points, distance)
         bad = off & ~cavity & ~hole
         kinds["cut"] += int(cut.sum())

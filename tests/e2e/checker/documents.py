@@ -1,4 +1,5 @@
 """What the tray's files hold: exactly the parts."""
+import hashlib
 import re
 import tomllib
 import zipfile
@@ -26,6 +27,8 @@ def read_profile(job, report):
         report.check("profile.toml parses", False, error)
         return {}
     report.check("profile.toml parses", True, f"{len(profile)} keys")
+    digest = hashlib.sha256((job.folder / "profile.toml").read_bytes()).hexdigest()
+    report.check("profile.toml has the sha256 of profile", digest == job.data["profile"]["sha256"], digest[:12])
     settings = job.data["settings"]
     differing = [key for key, value in settings.items() if key in profile and not _same(profile[key], value)]
     report.check("profile.toml agrees with settings", not differing, first_few(differing))

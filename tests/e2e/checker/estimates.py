@@ -39,7 +39,7 @@ def check_estimates(job, report):
         report.note(f"estimate {way}", f"{e['time_s'] / 3600:.2f} h, {e['support_mm3'] / 1000:.1f} cm³ support, "
                     f"{e['cost']:.2f} {e['currency']}, {e['source']}" if e["fits"] else "does not fit")
     packed = estimates["packed"]
-    if job.setting("variant", "packed") == "packed":
+    if job.data.get("variant", "packed") == "packed":
         report.check("estimates.packed counts the parts and trays",
                      packed["fits"] and (packed["parts"], packed["trays"]) == (len(job.parts()), len(job.trays())),
                      f"{packed['parts']} parts on {packed['trays']} trays")
