@@ -154,8 +154,8 @@ int count_open_edges(const TriangleSoup& soup) {
       std::count_if(sides.begin(), sides.end(), [](const auto& edge) { return edge.second != 2; }));
 }
 
-bool is_closed_manifold(const TriangleSoup& soup) {
-  if (std::any_of(soup.triangles.begin(), soup.triangles.end(), collapsed)) return false;
+std::vector<int> non_manifold_points(const TriangleSoup& soup) {
+  std::vector<char> bad(soup.points.size(), 0);
   std::unordered_map<std::uint64_t, int> triangle_at;  // directed edge → its triangle
   triangle_at.reserve(soup.triangles.size() * 3);
   std::vector<int> triangles_around(soup.points.size(), 0);
@@ -163,17 +163,19 @@ bool is_closed_manifold(const TriangleSoup& soup) {
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
     const Triangle& t = soup.triangles[i];
     for (int k = 0; k < 3; ++k) {
-      if (!triangle_at.emplace(pair_key(t[k], t[(k + 1) % 3]), static_cast<int>(i)).second)
-        return false;
-      ++triangles_around[t[k]];
-      some_triangle[t[k]] = static_cast<int>(i);
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      if (a == b || !triangle_at.emplace(pair_key(a, b), static_cast<int>(i)).second)
+        bad[a] = bad[b] = 1;
+      ++triangles_around[a];
+      some_triangle[a] = static_cast<int>(i);
     }
   }
   for (const auto& [edge, triangle] : triangle_at)
-    if (!triangle_at.contains((edge << 32) | (edge >> 32))) return false;
+    if (!triangle_at.contains((edge << 32) | (edge >> 32))) bad[edge >> 32] = bad[edge & 0xffffffff] = 1;
 
   for (std::size_t v = 0; v < soup.points.size(); ++v) {
-    if (some_triangle[v] < 0) continue;
+    if (some_triangle[v] < 0 || bad[v] != 0) continue;
     int fan = 0;
     int triangle = some_triangle[v];
     do {
@@ -182,10 +184,15 @@ bool is_closed_manifold(const TriangleSoup& soup) {
       triangle = triangle_at.at(pair_key(static_cast<int>(v), t[(at + 2) % 3]));
       ++fan;
     } while (triangle != some_triangle[v]);
-    if (fan != triangles_around[v]) return false;
+    if (fan != triangles_around[v]) bad[v] = 1;
   }
-  return true;
+  std::vector<int> points;
+  for (std::size_t v = 0; v < bad.size(); ++v)
+    if (bad[v] != 0) points.push_back(static_cast<int>(v));
+  return points;
 }
+
+bool is_closed_manifold(const TriangleSoup& soup) { return non_manifold_points(soup).empty(); }
 
 Components components_of(const TriangleSoup& soup) {
   std::vector<int> parent(soup.triangles.size());

@@ -25,8 +25,11 @@ int drop_duplicates(TriangleSoup& soup);
 // Edges that do not have exactly two triangles.
 int count_open_edges(const TriangleSoup& soup);
 
-// Every directed edge occurs once and its opposite once, and the triangles around each point form
-// one fan. Points must be welded.
+// Points at which the surface is open, has edges with more than two sides or sides that are not
+// alike, or at which several fans of triangles touch; in order.
+std::vector<int> non_manifold_points(const TriangleSoup& soup);
+
+// There is no such point.
 bool is_closed_manifold(const TriangleSoup& soup);
 
 // For each triangle the number of its edge-connected component, from 0 in order of first triangle.

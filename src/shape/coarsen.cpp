@@ -1,0 +1,83 @@
+#include "shape/coarsen.h"
+
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
+#include <OpenMesh/Tools/Decimater/ModEdgeLengthT.hh>
+#include <OpenMesh/Tools/Decimater/ModHausdorffT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+
+namespace packmerger {
+namespace {
+
+// The decimater's modules do not compile with Eigen's vectors.
+struct PlainTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
+};
+using PlainMesh = OpenMesh::TriMesh_ArrayKernelT<PlainTraits>;
+using Decimater = OpenMesh::Decimater::DecimaterT<PlainMesh>;
+
+constexpr float kMaxAspectRatio = 8;
+constexpr float kMaxTurnDegrees = 60;
+
+PlainMesh to_plain(const Mesh& mesh) {
+  PlainMesh plain;
+  for (const auto vertex : mesh.vertices()) {
+    const Vec3& p = mesh.point(vertex);
+    plain.add_vertex({p.x(), p.y(), p.z()});
+  }
+  for (const auto face : mesh.faces()) {
+    std::array<PlainMesh::VertexHandle, 3> corners;
+    int i = 0;
+    for (const auto vertex : face.vertices_ccw())
+      corners[i++] = PlainMesh::VertexHandle(vertex.idx());
+    plain.add_face(corners[0], corners[1], corners[2]);
+  }
+  return plain;
+}
+
+TriangleSoup from_plain(const PlainMesh& plain) {
+  TriangleSoup soup;
+  for (const auto vertex : plain.vertices()) {
+    const auto& p = plain.point(vertex);
+    soup.points.emplace_back(p[0], p[1], p[2]);
+  }
+  for (const auto face : plain.faces()) {
+    std::array<int, 3> triangle{};
+    int i = 0;
+    for (const auto vertex : face.vertices_ccw()) triangle[i++] = vertex.idx();
+    soup.triangles.push_back(triangle);
+  }
+  return soup;
+}
+
+}  // namespace
+
+TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max_edge_mm) {
+  PlainMesh mesh = to_plain(closed_mesh(soup));
+  mesh.request_face_normals();
+  mesh.update_face_normals();
+  Decimater decimater(mesh);
+  OpenMesh::Decimater::ModQuadricT<PlainMesh>::Handle quadric;
+  decimater.add(quadric);
+  decimater.module(quadric).unset_max_err();  // it orders the collapses; the others permit them
+  OpenMesh::Decimater::ModNormalFlippingT<PlainMesh>::Handle flipping;
+  decimater.add(flipping);
+  decimater.module(flipping).set_max_normal_deviation(kMaxTurnDegrees);
+  OpenMesh::Decimater::ModEdgeLengthT<PlainMesh>::Handle length;
+  decimater.add(length);
+  decimater.module(length).set_edge_length(static_cast<float>(max_edge_mm));
+  OpenMesh::Decimater::ModAspectRatioT<PlainMesh>::Handle aspect;
+  decimater.add(aspect);
+  decimater.module(aspect).set_aspect_ratio(kMaxAspectRatio);
+  OpenMesh::Decimater::ModHausdorffT<PlainMesh>::Handle hausdorff;
+  decimater.add(hausdorff);
+  decimater.module(hausdorff).set_tolerance(tolerance_mm);
+  decimater.initialize();
+  decimater.decimate_to_faces(0, 0);
+  mesh.garbage_collection();
+  return from_plain(mesh);
+}
+
+}  // namespace packmerger

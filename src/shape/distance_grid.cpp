@@ -1,0 +1,143 @@
+#include "shape/distance_grid.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include "base/error.h"
+#include "shape/soup.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kMaxVoxels = 2e8;
+// Keeps faces that lie on round coordinates off the grid's points.
+constexpr double kShift = 0.3719;
+constexpr int kMaxMends = 40;
+
+class Interrupter : public openvdb::util::NullInterrupter {
+ public:
+  explicit Interrupter(const Progress& progress) : progress_(progress) {}
+  bool wasInterrupted(int = -1) override {
+    try {
+      progress_.check();
+      return false;
+    } catch (const Error&) {
+      return true;
+    }
+  }
+
+ private:
+  const Progress& progress_;
+};
+
+// The mesh as OpenVDB wants to see it, in units of voxels.
+class Adapter {
+ public:
+  Adapter(TriangleSoup soup, const Vec3& origin, double voxel_mm)
+      : soup_(std::move(soup)), origin_(origin), voxel_mm_(voxel_mm) {}
+  std::size_t polygonCount() const { return soup_.triangles.size(); }
+  std::size_t pointCount() const { return soup_.points.size(); }
+  std::size_t vertexCount(std::size_t) const { return 3; }
+  void getIndexSpacePoint(std::size_t triangle, std::size_t corner, openvdb::Vec3d& point) const {
+    const Vec3 p = (soup_.points[soup_.triangles[triangle][corner]] - origin_) / voxel_mm_;
+    point = {p.x(), p.y(), p.z()};
+  }
+
+ private:
+  TriangleSoup soup_;
+  Vec3 origin_;
+  double voxel_mm_;
+};
+
+void add_quad(TriangleSoup& soup, const std::array<int, 4>& q) {
+  const auto& p = soup.points;
+  const bool other = (p[q[0]] - p[q[2]]).squaredNorm() > (p[q[1]] - p[q[3]]).squaredNorm();
+  if (other) {
+    soup.triangles.push_back({q[0], q[1], q[3]});
+    soup.triangles.push_back({q[1], q[2], q[3]});
+  } else {
+    soup.triangles.push_back({q[0], q[1], q[2]});
+    soup.triangles.push_back({q[0], q[2], q[3]});
+  }
+}
+
+}  // namespace
+
+struct DistanceGrid::Grid {
+  openvdb::FloatGrid::Ptr values;  // in voxels
+  Vec3 origin;                     // of index (0, 0, 0)
+  double voxel_mm = 0;
+
+  // One triangulation of the level, in grid coordinates.
+  TriangleSoup extract(double level) const {
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(*values, points, quads, level);
+    TriangleSoup soup;
+    soup.points.reserve(points.size());
+    for (const auto& p : points) soup.points.emplace_back(p.x(), p.y(), p.z());
+    soup.triangles.reserve(2 * quads.size());
+    // OpenVDB counts corners clockwise as seen from outside.
+    for (const auto& quad : quads)
+      add_quad(soup, {static_cast<int>(quad[3]), static_cast<int>(quad[2]),
+                      static_cast<int>(quad[1]), static_cast<int>(quad[0])});
+    return soup;
+  }
+
+  // The eight grid points around a place leave the enclosed side.
+  void give_way(const Vec3& place, double level) {
+    constexpr double kBarely = 0.05;
+    auto accessor = values->getAccessor();
+    for (int i = 0; i < 8; ++i) {
+      const openvdb::Coord at(static_cast<int>(std::floor(place.x())) + (i & 1),
+                              static_cast<int>(std::floor(place.y())) + (i >> 1 & 1),
+                              static_cast<int>(std::floor(place.z())) + (i >> 2));
+      const float least = static_cast<float>(level + kBarely);
+      if (accessor.getValue(at) < least) accessor.setValue(at, least);
+    }
+  }
+};
+
+DistanceGrid::DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, double outside_mm,
+                           const Progress& progress)
+    : grid_(std::make_unique<Grid>()) {
+  const double layers = (inside_mm + outside_mm) / voxel_mm + 4;
+  const double voxels = area_mm2(mesh) / (voxel_mm * voxel_mm) * layers;
+  if (voxels > kMaxVoxels)
+    throw Error(Fault::kBadInput, "The model is too large for its distance grid",
+                "Raise voxel_mm, or scale the model down.");
+  grid_->voxel_mm = voxel_mm;
+  grid_->origin = bounding_box(mesh).min() - Vec3::Constant(kShift * voxel_mm);
+  const Adapter adapter(to_soup(mesh), grid_->origin, voxel_mm);
+  Interrupter interrupter(progress);
+  grid_->values = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+      interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0),
+      static_cast<float>(outside_mm / voxel_mm + 2), static_cast<float>(inside_mm / voxel_mm + 2));
+  progress.check();
+}
+
+DistanceGrid::DistanceGrid(DistanceGrid&&) noexcept = default;
+DistanceGrid::~DistanceGrid() = default;
+
+TriangleSoup DistanceGrid::level(double level_mm, const Progress& progress) {
+  const double level = level_mm / grid_->voxel_mm;
+  for (int i = 0; i < kMaxMends; ++i) {
+    progress.check();
+    TriangleSoup soup = grid_->extract(level);
+    const std::vector<int> pinches = non_manifold_points(soup);
+    if (pinches.empty()) {
+      for (Vec3& point : soup.points) point = grid_->origin + grid_->voxel_mm * point;
+      return soup;
+    }
+    for (const int point : pinches) grid_->give_way(soup.points[point], level);
+  }
+  throw Error(Fault::kInternal, "A level of the distance grid stayed non-manifold",
+              "Change voxel_mm a little and try again.");
+}
+
+}  // namespace packmerger

@@ -1,0 +1,33 @@
+// Signed distance to a surface on a sparse grid, and its levels as surfaces: OpenVDB, which no other
+// file includes.
+#pragma once
+
+#include <memory>
+
+#include "base/progress.h"
+#include "model/mesh.h"
+
+namespace packmerger {
+
+class DistanceGrid {
+ public:
+  // Exact near the surface: from inside_mm below it to outside_mm above. What no way from outside
+  // leads to without crossing a triangle is inside, so pieces that overlap become one.
+  // mesh: closed; it may intersect itself.
+  // Throws Error{kBadInput} when about more than 200 million voxels are needed.
+  DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, double outside_mm,
+               const Progress& progress);
+  DistanceGrid(DistanceGrid&&) noexcept;
+  ~DistanceGrid();
+
+  // The surface around what is less than level_mm outside (negative: more than that inside), closed
+  // and manifold, normals pointing away from it; possibly empty. Where the level pinches itself, the
+  // enclosed side gives way, by up to a voxel, and the grid keeps that.
+  TriangleSoup level(double level_mm, const Progress& progress);
+
+ private:
+  struct Grid;
+  std::unique_ptr<Grid> grid_;
+};
+
+}  // namespace packmerger

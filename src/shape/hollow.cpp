@@ -1,0 +1,157 @@
+#include "shape/hollow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "shape/coarsen.h"
+#include "shape/distance_grid.h"
+#include "shape/inside_point.h"
+#include "shape/repair.h"
+#include "shape/soup.h"
+#include "shape/surface_query.h"
+
+namespace packmerger {
+namespace {
+
+// Least wall that is accepted after sampling and coarsening, as a fraction of wall_mm.
+constexpr double kLeastWall = 0.9;
+// Coarsening may move the cavity's surface by this fraction of the wall.
+constexpr double kCoarsening = 0.05;
+// Longest edge of a cavity's surface, in walls: triangles much longer than the wall is thick make
+// flat tetrahedra.
+constexpr double kLongestEdge = 2;
+constexpr double kThinShare = 0.5;
+
+double distance_to(const SurfaceQuery& outer, const TriangleSoup& soup) {
+  std::vector<double> distances(soup.triangles.size());
+  parallel_for(soup.triangles.size(), [&](std::size_t i) {
+    const auto& [a, b, c] = soup.triangles[i];
+    const Vec3& pa = soup.points[a];
+    const Vec3& pb = soup.points[b];
+    const Vec3& pc = soup.points[c];
+    double least = outer.distance_mm((pa + pb + pc) / 3);
+    for (const Vec3& p : {pa, pb, pc, Vec3((pa + pb) / 2), Vec3((pb + pc) / 2), Vec3((pc + pa) / 2)})
+      least = std::min(least, outer.distance_mm(p));
+    distances[i] = least;
+  });
+  return *std::min_element(distances.begin(), distances.end());
+}
+
+// The cavity's boundary with fewer triangles, normals still pointing away from the hollow.
+TriangleSoup coarse_boundary(const TriangleSoup& fine, const SurfaceQuery& outer, double wall_mm) {
+  double tolerance = kCoarsening * wall_mm;
+  for (int i = 0; i < 3; ++i, tolerance /= 2) {
+    TriangleSoup coarse = coarsened(fine, tolerance, kLongestEdge * wall_mm);
+    if (distance_to(outer, coarse) >= kLeastWall * wall_mm && !self_intersects(closed_mesh(coarse)))
+      return coarse;
+  }
+  return fine;
+}
+
+TriangleSoup turned(TriangleSoup soup) {
+  for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+  return soup;
+}
+
+// The model's own cavities whose wall would float free in the new cavities join them.
+Mesh without_swallowed_cavities(const Mesh& outer, const std::vector<TriangleSoup>& hollows) {
+  const std::vector<TriangleSoup> parts = split_components(to_soup(outer));
+  if (parts.size() == 1 || hollows.empty()) return outer;
+  std::vector<SurfaceQuery> queries;
+  for (const TriangleSoup& hollow : hollows) queries.emplace_back(hollow);
+  std::vector<Mesh> kept;
+  for (const TriangleSoup& part : parts) {
+    const bool swallowed = std::any_of(queries.begin(), queries.end(), [&](const auto& query) {
+      return query.winding_number(part.points[0]) != 0;
+    });
+    if (!swallowed) kept.push_back(closed_mesh(part));
+  }
+  if (kept.size() == parts.size()) return outer;
+  std::vector<const Mesh*> meshes;
+  for (const Mesh& mesh : kept) meshes.push_back(&mesh);
+  return united(meshes);
+}
+
+// Share of the outer surface below which there are less than two walls of matter.
+double thin_share(const Mesh& outer, const SurfaceQuery& query, double wall_mm) {
+  const TriangleSoup soup = to_soup(outer);
+  std::vector<double> areas(soup.triangles.size());
+  std::vector<char> thin(soup.triangles.size());
+  parallel_for(soup.triangles.size(), [&](std::size_t i) {
+    const auto& [a, b, c] = soup.triangles[i];
+    const Vec3 normal =
+        (soup.points[b] - soup.points[a]).cross(soup.points[c] - soup.points[a]);
+    areas[i] = normal.norm() / 2;
+    if (!(areas[i] > 0)) return;
+    const Vec3 middle = (soup.points[a] + soup.points[b] + soup.points[c]) / 3;
+    const auto depth = query.ray_mm(middle, -normal.normalized());
+    thin[i] = depth && *depth < 2 * wall_mm ? 1 : 0;
+  });
+  double all = 0;
+  double below = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    all += areas[i];
+    below += thin[i] != 0 ? areas[i] : 0;
+  }
+  return all > 0 ? below / all : 0;
+}
+
+std::string rounded(double number) { return std::to_string(std::llround(number)); }
+
+void warn(const Shell& shell, double thin, Warnings& warnings) {
+  if (!shell.cavities.empty()) {
+    double space = 0;
+    for (const Mesh& cavity : shell.cavities) space += std::abs(volume_mm3(cavity));
+    warnings.push_back({"sealed_cavity",
+                        "Printed in one piece, the hollowed model traps support or powder in " +
+                            std::to_string(shell.cavities.size()) + " sealed cavities of " +
+                            rounded(space) + " mm³"});
+  }
+  if (thin > kThinShare)
+    warnings.push_back({"thin_features", rounded(100 * thin) +
+                                             " % of the surface has less than two walls of matter "
+                                             "below it: parts will be small and hard to assemble"});
+}
+
+}  // namespace
+
+Shell solid_shell(const Mesh& outer, const ShapeSettings& settings) {
+  Shell shell;
+  shell.outer = outer;
+  shell.wall_mm = settings.wall_mm;
+  shell.volume_mm3 = volume_mm3(outer);
+  return shell;
+}
+
+Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warnings,
+             const Progress& progress) {
+  progress.report("hollowing", 0);
+  const double wall = settings.wall_mm;
+  DistanceGrid grid(outer, settings.voxel_mm, wall, 0, progress);
+  progress.report("hollowing", 0.4);
+  std::vector<TriangleSoup> hollows;
+  for (TriangleSoup& boundary : split_components(grid.level(-wall, progress)))
+    if (signed_volume_mm3(boundary) >= settings.min_cavity_mm3)  // islands of matter are negative
+      hollows.push_back(std::move(boundary));
+
+  const SurfaceQuery query(outer);
+  for (std::size_t i = 0; i < hollows.size(); ++i) {
+    progress.report("hollowing", 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(hollows.size()));
+    hollows[i] = coarse_boundary(hollows[i], query, wall);
+  }
+  Shell shell = solid_shell(without_swallowed_cavities(outer, hollows), settings);
+  for (const TriangleSoup& boundary : hollows) {
+    shell.cavity_points.push_back(point_inside(boundary));
+    shell.cavities.push_back(closed_mesh(turned(boundary)));
+    shell.volume_mm3 += volume_mm3(shell.cavities.back());  // negative
+  }
+  warn(shell, thin_share(outer, query, wall), warnings);
+  progress.report("hollowing", 1);
+  return shell;
+}
+
+}  // namespace packmerger

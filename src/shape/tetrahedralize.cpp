@@ -1,0 +1,153 @@
+#include "shape/tetrahedralize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/files.h"
+#include "base/process.h"
+#include "shape/inside_point.h"
+#include "shape/refine.h"
+#include "shape/soup.h"
+#include "shape/tetgen_files.h"
+
+namespace packmerger {
+namespace {
+
+constexpr int kOutsideMarker = 1;
+constexpr int kCavityMarker = 2;
+constexpr double kTimeout_s = 600;
+// The sanitizers reserve terabytes of addresses, so a build with them sets no limit.
+constexpr std::uint64_t kMaxMemoryBytes =
+#ifdef PACKMERGER_NO_MEMORY_LIMIT
+    0;
+#else
+    std::uint64_t{8} << 30;
+#endif
+constexpr double kVolumeTolerance = 1e-3;
+// Edges of the surface are halved until a regular tetrahedron on them would hold this share of what
+// one may hold: the wall is thinner than such a tetrahedron is high.
+constexpr double kSurfaceShare = 1.0;
+
+double longest_surface_edge_mm(double max_tetrahedron_mm3) {
+  return std::cbrt(kSurfaceShare * max_tetrahedron_mm3 * 6 * std::sqrt(2.0));
+}
+
+TriangleSoup turned(TriangleSoup soup) {
+  for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+  return soup;
+}
+
+void add_facets(TetgenInput& input, TriangleSoup soup, int marker, double max_edge_mm) {
+  std::vector<int> markers(soup.triangles.size(), marker);
+  split_long_edges(soup, markers, max_edge_mm);
+  const int base = static_cast<int>(input.points.size());
+  input.points.insert(input.points.end(), soup.points.begin(), soup.points.end());
+  for (const auto& [a, b, c] : soup.triangles) input.facets.push_back({a + base, b + base, c + base});
+  input.markers.insert(input.markers.end(), markers.begin(), markers.end());
+}
+
+std::string complete_flags(const std::string& flags, double max_volume_mm3) {
+  std::string complete = flags;
+  if (complete.ends_with('a')) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.9f", max_volume_mm3);
+    complete += number;
+  }
+  if (complete.find('Q') == complete.npos) complete += 'Q';
+  return complete;
+}
+
+TetgenInput input_for(const Shell& shell, const ShapeSettings& settings, double max_volume_mm3) {
+  TetgenInput input;
+  input.flags = complete_flags(settings.tetgen_flags, max_volume_mm3);
+  const double max_edge = longest_surface_edge_mm(max_volume_mm3);
+  const TriangleSoup outer = to_soup(shell.outer);
+  add_facets(input, outer, kOutsideMarker, max_edge);
+  for (const TriangleSoup& part : split_components(outer))
+    if (signed_volume_mm3(part) < 0) input.holes.push_back(point_inside(turned(part)));
+  for (const Mesh& cavity : shell.cavities)
+    add_facets(input, to_soup(cavity), kCavityMarker, max_edge);
+  input.holes.insert(input.holes.end(), shell.cavity_points.begin(), shell.cavity_points.end());
+  return input;
+}
+
+// Empty when TetGen refused or died.
+std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress& progress) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "surface";
+  const fs::path to = folder.path() / "tetrahedra";
+  write_tetgen_input(from, input);
+  ProcessSpec spec;
+  spec.argv = {(program_folder() / "packmerger-tetgen").string(), from.string(), to.string()};
+  spec.max_memory_bytes = kMaxMemoryBytes;
+  const ProcessResult result = run_process(spec, kTimeout_s, progress);
+  if (!result.status.ok() || !fs::exists(to)) return std::nullopt;
+  return read_tetgen_output(to);
+}
+
+std::array<int, 3> sorted(std::array<int, 3> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+// Whether every boundary face lies on a facet.
+bool mark_sides(TetMesh& mesh, const TetgenOutput& output) {
+  std::map<std::array<int, 3>, int> marker_of;
+  for (std::size_t i = 0; i < output.faces.size(); ++i)
+    marker_of[sorted(output.faces[i])] = output.markers[i];
+  for (int t = 0; t < mesh.count(); ++t)
+    for (int face = 0; face < 4; ++face) {
+      if (mesh.neighbours[t][face] >= 0) continue;
+      const auto marker = marker_of.find(sorted(face_corners(mesh, t, face)));
+      if (marker == marker_of.end()) return false;
+      if (marker->second != kOutsideMarker && marker->second != kCavityMarker) return false;
+      mesh.sides[t][face] = marker->second == kOutsideMarker ? FaceSide::kOutside : FaceSide::kCavity;
+    }
+  return true;
+}
+
+// Empty when some tetrahedron is flat or some boundary face belongs to no facet.
+std::optional<TetMesh> mesh_of(TetgenOutput&& output) {
+  TetMesh mesh;
+  mesh.points = std::move(output.points);
+  mesh.tetrahedra = std::move(output.tetrahedra);
+  for (int t = 0; t < mesh.count(); ++t) {
+    if (mesh.volume_mm3(t) < 0) std::swap(mesh.tetrahedra[t][0], mesh.tetrahedra[t][1]);
+    if (!(mesh.volume_mm3(t) > 0)) return std::nullopt;
+  }
+  link_neighbours(mesh);
+  if (!mark_sides(mesh, output)) return std::nullopt;
+  return mesh;
+}
+
+bool all_positive(const TetMesh& mesh) {
+  for (int t = 0; t < mesh.count(); ++t)
+    if (!(mesh.volume_mm3(t) > 0)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::optional<TetMesh> tetrahedralize(const Shell& shell, const ShapeSettings& settings,
+                                      const Progress& progress) {
+  progress.report("making tetrahedra", 0);
+  const double max_volume = settings.max_tetrahedron_fraction * shell.volume_mm3;
+  auto output = run_tetgen(input_for(shell, settings, max_volume), progress);
+  if (!output) return std::nullopt;
+  progress.report("making tetrahedra", 0.8);
+  std::optional<TetMesh> mesh = mesh_of(std::move(*output));
+  if (!mesh) return std::nullopt;
+  const double volume = total_volume_mm3(*mesh);
+  if (std::abs(volume - shell.volume_mm3) > kVolumeTolerance * shell.volume_mm3) return std::nullopt;
+  split_large_tetrahedra(*mesh, max_volume);
+  if (!all_positive(*mesh)) return std::nullopt;
+  progress.report("making tetrahedra", 1);
+  return mesh;
+}
+
+}  // namespace packmerger
