@@ -1,0 +1,251 @@
+#include "shape/smooth_cuts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "shape/adjacency.h"
+#include "shape/stars.h"
+#include "shape/surface_walk.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kCreaseAngle = 40 * std::numbers::pi / 180;
+constexpr double kTolerance_mm = 0.05;        // of the outer and cavity surfaces
+constexpr double kLeastVolumeFraction = 0.1;  // of a tetrahedron's volume at the start
+constexpr int kHalvings = 3;                  // of a step that is too long
+
+// For every point on a cut the points its position is averaged from.
+struct CutNet {
+  std::vector<int> points;                   // ascending
+  std::vector<std::vector<int>> neighbours;  // same order
+};
+
+// An edge of a face between two segments.
+struct CutEdge {
+  int a, b;   // a < b
+  int faces;  // between two segments, around the edge
+};
+
+std::vector<CutEdge> cut_face_edges(const TetMesh& mesh, const std::vector<int>& labels) {
+  std::vector<std::array<int, 2>> all;
+  for (int t = 0; t < mesh.count(); ++t)
+    for (int f = 0; f < 4; ++f) {
+      const int across = mesh.neighbours[t][f];
+      if (across < t || labels[across] == labels[t]) continue;
+      const std::array<int, 3> corners = face_corners(mesh, t, f);
+      for (int i = 0; i < 3; ++i) {
+        const auto [a, b] = std::minmax(corners[i], corners[(i + 1) % 3]);
+        all.push_back({a, b});
+      }
+    }
+  std::sort(all.begin(), all.end());
+  std::vector<CutEdge> edges;
+  for (const auto& [a, b] : all) {
+    if (!edges.empty() && edges.back().a == a && edges.back().b == b)
+      ++edges.back().faces;
+    else
+      edges.push_back({a, b, 1});
+  }
+  return edges;
+}
+
+// Points on the surface follow the cut curves; points inside follow the curves where three segments
+// meet, if they lie on one, and the cut's surface otherwise.
+CutNet cut_net(const TetMesh& mesh, const Segments& segments) {
+  std::set<std::array<int, 2>> curves;
+  for (const FaceSide side : {FaceSide::kOutside, FaceSide::kCavity})
+    for (const auto& edge : cut_edges(mesh, segments, side)) curves.insert(edge);
+  std::vector<char> on_surface(mesh.points.size(), 0);
+  for (int t = 0; t < mesh.count(); ++t)
+    for (int f = 0; f < 4; ++f)
+      if (mesh.neighbours[t][f] < 0)
+        for (const int corner : face_corners(mesh, t, f)) on_surface[corner] = 1;
+
+  struct Ways {
+    std::vector<int> curve, junction, surface;
+  };
+  std::vector<Ways> ways(mesh.points.size());
+  const auto note = [&](int point, int other, const CutEdge& edge) {
+    Ways& at = ways[point];
+    if (on_surface[point]) {
+      if (curves.contains({edge.a, edge.b})) at.curve.push_back(other);
+      return;
+    }
+    at.surface.push_back(other);
+    if (edge.faces > 2) at.junction.push_back(other);
+  };
+  for (const CutEdge& edge : cut_face_edges(mesh, segments.of_tetrahedron)) {
+    note(edge.a, edge.b, edge);
+    note(edge.b, edge.a, edge);
+  }
+  CutNet net;
+  for (int point = 0; point < static_cast<int>(ways.size()); ++point) {
+    Ways& at = ways[point];
+    std::vector<int>& chosen = !at.curve.empty()      ? at.curve
+                               : !at.junction.empty() ? at.junction
+                                                      : at.surface;
+    if (chosen.empty()) continue;
+    net.points.push_back(point);
+    net.neighbours.push_back(std::move(chosen));
+  }
+  return net;
+}
+
+// Moves points one by one and keeps what must be kept.
+class Smoother {
+ public:
+  explicit Smoother(TetMesh& mesh)
+      : mesh_(mesh), stars_(mesh), walk_(mesh, kCreaseAngle), face_of_(mesh.points.size(), -1) {
+    for (int t = 0; t < mesh.count(); ++t)
+      least_volumes_.push_back(kLeastVolumeFraction * mesh.volume_mm3(t));
+    for (std::size_t point = 0; point < mesh.points.size(); ++point)
+      if (const auto faces = walk_.faces_at(static_cast<int>(point)); !faces.empty())
+        face_of_[point] = faces.front();
+  }
+
+  // Moves the point to the target or some way towards it, if at all.
+  void move(int point, const Vec3& target) {
+    const bool on_surface = face_of_[point] >= 0;
+    if (on_surface && walk_.freedom(point) == Freedom::kNone) return;
+    const Vec3 start = mesh_.points[point];
+    double step = 1;
+    for (int halving = 0; halving <= kHalvings; ++halving, step /= 2) {
+      const SurfaceWalk::Place place = allowed_place(point, start + step * (target - start));
+      mesh_.points[point] = place.point;
+      if (volumes_are_kept(point) && (!on_surface || surface_is_kept(point, place))) {
+        face_of_[point] = place.face;
+        return;
+      }
+    }
+    mesh_.points[point] = start;
+  }
+
+ private:
+  SurfaceWalk::Place allowed_place(int point, const Vec3& wish) const {
+    if (face_of_[point] < 0) return {wish, -1};
+    if (walk_.freedom(point) == Freedom::kCrease)
+      return {walk_.nearest_on_crease(wish, point), face_of_[point]};
+    return walk_.nearest(wish, face_of_[point]);
+  }
+
+  bool volumes_are_kept(int point) const {
+    const auto star = stars_.of(point);
+    return std::all_of(star.begin(), star.end(),
+                       [&](int t) { return mesh_.volume_mm3(t) > least_volumes_[t]; });
+  }
+
+  // The surface around a moved point against the surface as it was.
+  bool surface_is_kept(int point, const SurfaceWalk::Place& place) {
+    ring_.clear();
+    for (const int face : walk_.faces_at(point))
+      for (const int corner : walk_.surface().faces[face].corners)
+        if (corner != point) ring_.push_back(corner);
+    std::sort(ring_.begin(), ring_.end());
+    ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+    return lies_flat(point, place) || (new_faces_are_near(point, place.face) && homes_are_near(point));
+  }
+
+  // Both surfaces lie in one thin slab: the cheap test that nearly always does.
+  bool lies_flat(int point, const SurfaceWalk::Place& place) const {
+    const Vec3 normal = walk_.normal(place.face);
+    const auto is_in_slab = [&](const Vec3& p) {
+      return std::abs(normal.dot(p - place.point)) <= kTolerance_mm / 2;
+    };
+    return is_in_slab(walk_.home(point)) &&
+           std::all_of(ring_.begin(), ring_.end(), [&](int other) {
+             return is_in_slab(mesh_.points[other]) && is_in_slab(walk_.home(other));
+           });
+  }
+
+  bool new_faces_are_near(int point, int from) const {
+    const auto is_near = [&](const Vec3& p) {
+      return (walk_.nearest(p, from).point - p).squaredNorm() <= kTolerance_mm * kTolerance_mm;
+    };
+    for (const int face : walk_.faces_at(point)) {
+      const auto [a, b, c] = walk_.surface().faces[face].corners;
+      const Vec3 &pa = mesh_.points[a], &pb = mesh_.points[b], &pc = mesh_.points[c];
+      if (!is_near((pa + pb + pc) / 3) || !is_near((pa + pb) / 2) || !is_near((pb + pc) / 2) ||
+          !is_near((pc + pa) / 2))
+        return false;
+    }
+    return true;
+  }
+
+  bool homes_are_near(int point) const {
+    const auto nearest_of = [&](const Vec3& p, int centre) {
+      double least = 1e300;
+      for (const int face : walk_.faces_at(centre)) {
+        const auto [a, b, c] = walk_.surface().faces[face].corners;
+        const Vec3 q = nearest_on_triangle(p, mesh_.points[a], mesh_.points[b], mesh_.points[c]);
+        least = std::min(least, (q - p).squaredNorm());
+      }
+      return least;
+    };
+    const auto is_near = [&](int home) {
+      const Vec3& p = walk_.home(home);
+      double least = std::min(nearest_of(p, home), nearest_of(p, point));
+      for (const int other : ring_) {
+        if (least <= kTolerance_mm * kTolerance_mm) break;
+        least = std::min(least, nearest_of(p, other));
+      }
+      return least <= kTolerance_mm * kTolerance_mm;
+    };
+    return is_near(point) && std::all_of(ring_.begin(), ring_.end(), is_near);
+  }
+
+  TetMesh& mesh_;
+  Stars stars_;
+  SurfaceWalk walk_;
+  std::vector<int> face_of_;  // the face of the surface as it was that a boundary point lies on, or -1
+  std::vector<double> least_volumes_;
+  std::vector<int> ring_;
+};
+
+}  // namespace
+
+double cut_roughness(const TetMesh& mesh, const Segments& segments) {
+  double sum = 0;
+  int count = 0;
+  for (const FaceSide side : {FaceSide::kOutside, FaceSide::kCavity}) {
+    std::vector<std::array<int, 2>> ends;  // point, the other end
+    for (const auto& [a, b] : cut_edges(mesh, segments, side)) {
+      ends.push_back({a, b});
+      ends.push_back({b, a});
+    }
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t i = 0, next = 0; i < ends.size(); i = next) {
+      while (next < ends.size() && ends[next][0] == ends[i][0]) ++next;
+      if (next - i != 2) continue;
+      const Vec3 in = mesh.points[ends[i][0]] - mesh.points[ends[i][1]];
+      const Vec3 out = mesh.points[ends[i + 1][1]] - mesh.points[ends[i][0]];
+      sum += std::atan2(in.cross(out).norm(), in.dot(out));
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+CutRoughness smooth_cuts(TetMesh& mesh, const Segments& segments, const ShapeSettings& settings,
+                         const Progress& progress) {
+  CutRoughness roughness{cut_roughness(mesh, segments), 0};
+  const CutNet net = cut_net(mesh, segments);
+  Smoother smoother(mesh);
+  for (int round = 0; round < settings.smooth_rounds; ++round) {
+    progress.report("smoothing cuts", static_cast<double>(round) / settings.smooth_rounds);
+    for (std::size_t i = 0; i < net.points.size(); ++i) {
+      Vec3 mean = Vec3::Zero();
+      for (const int other : net.neighbours[i]) mean += mesh.points[other];
+      smoother.move(net.points[i], mean / static_cast<double>(net.neighbours[i].size()));
+    }
+  }
+  roughness.after_rad = cut_roughness(mesh, segments);
+  return roughness;
+}
+
+}  // namespace packmerger
