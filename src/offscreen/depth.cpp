@@ -10,16 +10,14 @@ struct DepthRenderer::Surface {
   std::unique_ptr<DrawingSurface> drawing;
 
   // Surfaces only grow: rotated parts come in many sizes and making one is slow.
-  void hold(int width, int height) {
-    if (drawing && drawing->width() >= width && drawing->height() >= height) {
-      drawing->make_current();
-      return;
-    }
+  DrawingSurface& at_least(int width, int height) {
+    if (drawing && drawing->width() >= width && drawing->height() >= height) return *drawing;
     const int old_width = drawing ? drawing->width() : 0;
     const int old_height = drawing ? drawing->height() : 0;
     drawing.reset();
     drawing = std::make_unique<DrawingSurface>(std::max({width, old_width, 64}),
                                                std::max({height, old_height, 64}));
+    return *drawing;
   }
 };
 
@@ -98,14 +96,14 @@ DepthMap no_hits(const RayLattice& rays, float nothing) {
 
 DepthMap DepthRenderer::from_above(const DepthTriangles& triangles, const RayLattice& rays) {
   if (triangles.triangles.empty()) return no_hits(rays, kNothingBelow);
-  surface_->hold(rays.width, rays.height);
+  const DrawingSurface::Current current(surface_->at_least(rays.width, rays.height));
   const HeightRange range = height_range(triangles);
   return draw_depth(triangles, rays, range.high, range.low, kNothingBelow);
 }
 
 DepthMap DepthRenderer::from_below(const DepthTriangles& triangles, const RayLattice& rays) {
   if (triangles.triangles.empty()) return no_hits(rays, kNothingAbove);
-  surface_->hold(rays.width, rays.height);
+  const DrawingSurface::Current current(surface_->at_least(rays.width, rays.height));
   const HeightRange range = height_range(triangles);
   return draw_depth(triangles, rays, range.low, range.high, kNothingAbove);
 }

@@ -200,6 +200,7 @@ Image draw(const Scene& scene, const Camera& camera, int width, int height, int 
   const int wide = width * supersampling;
   const int high = height * supersampling;
   DrawingSurface surface(wide, high);
+  const DrawingSurface::Current current(surface);
   glViewport(0, 0, wide, high);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);

@@ -18,19 +18,16 @@ DrawingSurface::DrawingSurface(int width, int height)
       pixels_(std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
       context_(OSMesaCreateContextExt(OSMESA_RGBA, 24, 0, 0, nullptr)) {
   if (context_ == nullptr) refuse();
-  try {
-    make_current();
-  } catch (...) {
-    OSMesaDestroyContext(context_);
-    throw;
-  }
 }
 
 DrawingSurface::~DrawingSurface() { OSMesaDestroyContext(context_); }
 
-void DrawingSurface::make_current() {
-  if (OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, width_, height_) == GL_FALSE)
+DrawingSurface::Current::Current(DrawingSurface& surface) {
+  if (OSMesaMakeCurrent(surface.context_, surface.pixels_.data(), GL_UNSIGNED_BYTE, surface.width_,
+                        surface.height_) == GL_FALSE)
     refuse();
 }
+
+DrawingSurface::Current::~Current() { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
 
 }  // namespace packmerger

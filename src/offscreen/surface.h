@@ -8,8 +8,7 @@
 
 namespace packmerger {
 
-// A drawing surface of width × height pixels with 24 bits of depth or more. It is current on the
-// calling thread from its making until another one is made current there.
+// A drawing surface of width × height pixels with 24 bits of depth.
 class DrawingSurface {
  public:
   DrawingSurface(int width, int height);
@@ -19,7 +18,16 @@ class DrawingSurface {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  void make_current();
+
+  // While alive, OpenGL calls of this thread draw on the surface. No thread keeps a surface longer
+  // than that, so that it may be destroyed by another thread than the one that drew on it.
+  class Current {
+   public:
+    explicit Current(DrawingSurface& surface);
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+    ~Current();
+  };
 
  private:
   int width_;

@@ -1,0 +1,27 @@
+// The support volume V_s of closed surfaces (paper, section 6), counted along vertical lines on
+// the exact triangles. It shares nothing with the depth maps, so that one can check the other.
+#pragma once
+
+#include <vector>
+
+#include "model/mesh.h"
+
+namespace packmerger {
+
+// mm³. V_s is the sum.
+struct ColumnSupport {
+  double below = 0;   // under the lowest matter of every line, down to the plate
+  double inside = 0;  // between matter and matter
+};
+
+// Counts on the lines through the cell centres of a grid with the given step: the empty lengths
+// below a facet that needs support, down to the first matter below or to the plate at plate_mm.
+// A facet needs support when its normal points down by more than support_angle (radians) below the
+// horizontal. The surfaces must be closed, normals outward, and must not overlap.
+ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double step_mm,
+                             double support_angle, double plate_mm);
+
+// The z component of a facet's unit normal below which it needs support.
+double support_normal_limit(double support_angle);
+
+}  // namespace packmerger

@@ -1,0 +1,43 @@
+// Depth maps of one item in one rotation (paper, section 7: both sides from the z-buffer), and the
+// maps of merged parts, which are made of their members' maps without drawing anything.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/mesh.h"
+#include "offscreen/offscreen.h"
+
+namespace packmerger {
+
+// All maps of a model in one rotation share one grid: cell (i, j) is the square
+// [i·grid, (i+1)·grid] × [j·grid, (j+1)·grid] of the rotated frame. Arrays hold the cells
+// x0..x0+width-1, y0..y0+height-1, x fastest; heights in mm.
+struct DepthMaps {
+  int x0 = 0;
+  int y0 = 0;
+  int width = 0;
+  int height = 0;
+  Box3 box;  // exact, of the rotated surface, mm
+  // Bounds over the whole closed cell: nothing of the surface lies below `low` or above `top`.
+  std::vector<float> low;  // kNothingAbove where the cell holds nothing
+  std::vector<float> top;  // kNothingBelow
+  // Samples at the cell's centre, without bias either way.
+  std::vector<float> bottom;            // kNothingAbove where the line misses
+  std::vector<float> roof;              // kNothingBelow
+  std::vector<std::uint8_t> hangs;      // 1 where the facet seen from below needs support
+};
+
+// surface: in the rotated frame, mm. Bounds are exact up to the z-buffer's sampling: OSMesa samples
+// the cells' corners, and vertices and edges, where a facet may reach further inside a cell, are
+// entered exactly.
+DepthMaps draw_depth_maps(DepthRenderer& renderer, const TriangleSoup& surface, double grid_mm,
+                          double support_angle);
+
+// The same item turned by quarters × 90° about z: cells map to cells.
+DepthMaps quarter_turned(const DepthMaps& maps, int quarters);
+
+// The maps of several items, of the same rotation and grid, as one.
+DepthMaps united(const std::vector<const DepthMaps*>& members);
+
+}  // namespace packmerger

@@ -1,0 +1,103 @@
+#include "pack/exact_gap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/distance.h>
+
+namespace packmerger {
+namespace {
+
+using Tree = fcl::BVHModel<fcl::OBBRSSd>;
+
+std::shared_ptr<Tree> tree_of(const Mesh& mesh) {
+  const TriangleSoup soup = to_soup(mesh);
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(soup.triangles.size());
+  for (const auto& [a, b, c] : soup.triangles)
+    triangles.emplace_back(static_cast<std::size_t>(a), static_cast<std::size_t>(b),
+                           static_cast<std::size_t>(c));
+  auto tree = std::make_shared<Tree>();
+  tree->beginModel();
+  tree->addSubModel(soup.points, triangles);
+  tree->endModel();
+  return tree;
+}
+
+// The solid angle of all faces seen from p over 4π: 1 within the matter, 0 outside of it.
+double winding(const Mesh& mesh, const Vec3& p) {
+  double sum = 0;
+  for (const auto face : mesh.faces()) {
+    const auto corner = corners(mesh, face);
+    const Vec3 a = corner[0] - p;
+    const Vec3 b = corner[1] - p;
+    const Vec3 c = corner[2] - p;
+    const double la = a.norm();
+    const double lb = b.norm();
+    const double lc = c.norm();
+    sum += 2 * std::atan2(a.dot(b.cross(c)),
+                          la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (4 * std::numbers::pi);
+}
+
+// Surfaces that do not meet are one in the other or apart; each piece of a surface must be asked,
+// and any of its points will do.
+bool lies_within(const Mesh& inner, const Mesh& outer) {
+  std::vector<bool> seen(inner.n_vertices(), false);
+  std::vector<Mesh::VertexHandle> open;
+  for (const auto start : inner.vertices()) {
+    if (seen[static_cast<std::size_t>(start.idx())]) continue;
+    if (winding(outer, inner.point(start)) > 0.5) return true;
+    open.assign(1, start);
+    seen[static_cast<std::size_t>(start.idx())] = true;
+    while (!open.empty()) {
+      const Mesh::VertexHandle vertex = open.back();
+      open.pop_back();
+      for (const auto next : inner.vv_range(vertex)) {
+        if (seen[static_cast<std::size_t>(next.idx())]) continue;
+        seen[static_cast<std::size_t>(next.idx())] = true;
+        open.push_back(next);
+      }
+    }
+  }
+  return false;
+}
+
+double surface_distance(const Tree& a, const Tree& b, double enough) {
+  fcl::DistanceRequestd request;
+  fcl::DistanceResultd result;
+  // What is known already: branches that are further apart are skipped.
+  result.min_distance = std::min(enough, std::numeric_limits<double>::max());
+  const fcl::Transform3d here = fcl::Transform3d::Identity();
+  return std::clamp(fcl::distance(&a, here, &b, here, request, result), 0.0, enough);
+}
+
+}  // namespace
+
+double least_gap_mm(const std::vector<Mesh>& parts, double enough) {
+  std::vector<Box3> boxes;
+  std::vector<std::shared_ptr<Tree>> trees(parts.size());
+  for (const Mesh& part : parts) boxes.push_back(bounding_box(part));
+  const auto tree = [&](std::size_t i) {
+    if (!trees[i]) trees[i] = tree_of(parts[i]);
+    return trees[i];
+  };
+  double least = enough;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (std::size_t j = i + 1; j < parts.size(); ++j) {
+      if (boxes[i].exteriorDistance(boxes[j]) >= least) continue;
+      least = std::min(least, surface_distance(*tree(i), *tree(j), least));
+      if (least <= 0) return 0;
+      if (boxes[i].intersects(boxes[j]) &&
+          (lies_within(parts[i], parts[j]) || lies_within(parts[j], parts[i])))
+        return 0;
+    }
+  return least;
+}
+
+}  // namespace packmerger

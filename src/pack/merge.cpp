@@ -1,0 +1,31 @@
+#include "pack/merge.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+namespace packmerger {
+
+std::vector<std::pair<int, int>> mergeable_pairs(const std::vector<ItemSet>& parts,
+                                                 const PackProblem& problem) {
+  std::vector<int> part_of(problem.items.size(), -1);
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    for (const int item : parts[part])
+      part_of[static_cast<std::size_t>(item)] = static_cast<int>(part);
+  std::set<std::pair<int, int>> pairs;
+  for (const SegmentEdge& edge : problem.edges) {
+    const std::size_t a = static_cast<std::size_t>(edge.a);
+    const std::size_t b = static_cast<std::size_t>(edge.b);
+    if (problem.items[a].model != problem.items[b].model) continue;
+    if (part_of[a] != part_of[b]) pairs.insert(std::minmax(part_of[a], part_of[b]));
+  }
+  return {pairs.begin(), pairs.end()};
+}
+
+ItemSet merged(const ItemSet& a, const ItemSet& b) {
+  ItemSet all;
+  std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
+  return all;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,20 @@
+// Additional merging (paper, section 6.3): parts as sets of items, joined along the edges of the
+// adjacency graph.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "model/packing.h"
+
+namespace packmerger {
+
+using ItemSet = std::vector<int>;  // sorted
+
+// Pairs of parts (a < b) that share an edge of the graph and come from the same model, sorted.
+std::vector<std::pair<int, int>> mergeable_pairs(const std::vector<ItemSet>& parts,
+                                                 const PackProblem& problem);
+
+ItemSet merged(const ItemSet& a, const ItemSet& b);
+
+}  // namespace packmerger

@@ -1,0 +1,24 @@
+// Packing and merging (paper, section 6): poses for all items on as few trays as needed, some of
+// them merged, at little cost.
+#pragma once
+
+#include "base/progress.h"
+#include "model/packing.h"
+
+namespace packmerger {
+
+// Guaranteed of the answer, on the exact meshes:
+//  - every item is in exactly one part, and items of one part keep their places to one another;
+//  - every part lies within [0, build_mm], and the first of each tray stands on z = 0;
+//  - two parts of one tray are gap_mm apart at least, in every direction (to 1e-6 mm);
+//  - taken in removal_order, each part can be lifted straight up without touching another;
+//  - trays[i].support_mm3 is counted on the exact meshes, and cost is the sum of Cost::evaluate;
+//  - cost does not exceed that of all parts side by side, each the best way up.
+// The same problem and seed give the same answer on any number of threads, unless budget_s ends the
+// search.
+//
+// Throws Error{kBadInput} where an item fits the build volume in no rotation, with its size;
+// Error{kUsage} for settings without sense; Error{kInterrupted} when cancelled.
+Packing pack(const PackProblem& problem, const Progress& progress);
+
+}  // namespace packmerger
