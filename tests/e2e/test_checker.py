@@ -12,9 +12,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import synthetic
 from breaks import BREAKS, path_of_first
 from check_job import check
-from checker import meshes, removal, separation, solids, triangles
+from checker import figures, meshes, removal, separation, solids, triangles
 from checker.columns import Grid, intervals
 from checker.tree import Tree
+from shapes import sphere
 
 
 class Promises(unittest.TestCase):
@@ -111,6 +112,22 @@ class Geometry(unittest.TestCase):
         (_, bottom, top, _), bad, lines = intervals(grid, corners)
         self.assertLess(abs((top - bottom).sum() * grid.step ** 2 / meshes.volume(corners) - 1), 2e-3)
         self.assertLess(bad, 1e-3 * lines)
+
+    def test_support_of_a_sphere_by_angle(self):
+        """Standing on the tray, only the cap steeper than the angle counts; its volume is known."""
+        radius, corners = 20.0, sphere(20.0, 120, 180)
+
+        class OneSphere:
+            triangles = {1: corners}
+
+            def parts_of_tray(self, _):
+                return [{"id": 1}]
+        for angle in (0, 30, 45, 60):
+            cosine = np.sin(np.radians(angle))  # of the cap's polar angle
+            under = np.pi * radius ** 3 * (1 - cosine ** 2) - 2 / 3 * np.pi * radius ** 3 * (1 - cosine ** 3)
+            least, most = figures.tray_support(OneSphere(), 1, angle)
+            self.assertLess(abs(least / under - 1), 0.03, angle)
+            self.assertLess(abs(most / under - 1), 0.03, angle)
 
     def test_parts_that_only_touch_seen_from_above_lift_freely(self):
         low, high = ([0, 10], [0, 10], [0, 10]), ([10, 20], [0, 10], [5, 30])
