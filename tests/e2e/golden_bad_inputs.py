@@ -14,7 +14,7 @@ import program
 from bad_inputs import BAD, CASES, NONE, stl
 from shapes import sphere
 
-PEAK_BYTES = 1 << 30
+PEAK_BYTES = 3 << 29
 
 
 class BadInputs(unittest.TestCase):
