@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "picture/part_colour.h"
+#include "picture/plate.h"
 #include "picture/preview.h"
 
 namespace packmerger {
@@ -95,23 +96,23 @@ void add_cuts(Scene& scene, const ColouredMesh& coloured, const Pose& pose, doub
 
 Image cut_picture(const ColouredMesh& before, const ColouredMesh& after) {
   const Box3 box = bounding_box(before.surface);
-  const double size = box.sizes().norm();
+  const Vec3 right = kView.cross(Vec3::UnitZ()).normalized();
+  const double width = box.sizes().dot(right.cwiseAbs());
   Scene scene;
   scene.line_width_px = 2;
   std::vector<std::unique_ptr<Mesh>> owned;
-  Box3 all;
+  std::vector<Box3> all;
   Pose pose = Pose::Identity();
   for (const ColouredMesh* coloured : {&before, &after}) {
     for (auto& [segment, mesh] : segment_meshes(*coloured)) {
       owned.push_back(std::make_unique<Mesh>(std::move(mesh)));
       scene.meshes.push_back({owned.back().get(), part_colour(segment), pose});
     }
-    add_cuts(scene, *coloured, pose, 2e-3 * size);
-    all.extend(box.translated(Vec3(pose.translation())));
-    pose.translation().x() += 1.15 * box.sizes().x();
+    add_cuts(scene, *coloured, pose, 2e-3 * width);
+    all.push_back(box.translated(Vec3(pose.translation())));
+    pose.translation() += 1.1 * width * right;
   }
-  const double aspect = static_cast<double>(kWidth) / kHeight;
-  return draw(scene, camera_looking_at(all, kView, aspect), kWidth, kHeight);
+  return draw(scene, distant_camera(all, kView, kWidth, kHeight), kWidth, kHeight);
 }
 
 }  // namespace packmerger

@@ -22,7 +22,7 @@ Colour part_colour(int index) {
     float saturation;
     float value;
   };
-  constexpr std::array<Tone, 3> kTones{{{0.62F, 0.93F}, {0.78F, 0.78F}, {0.45F, 0.98F}}};
+  constexpr std::array<Tone, 3> kTones{{{0.62F, 0.93F}, {0.60F, 0.80F}, {0.45F, 0.97F}}};
   const double hue = std::fmod(0.08 + kGolden * index, 1.0);
   const Tone& tone = kTones[static_cast<std::size_t>(index) % kTones.size()];
   const auto shade = [&](double shift) {

@@ -18,7 +18,7 @@ constexpr double kPlateTop = -12e-4;
 constexpr double kShadowTop = -8e-4;
 constexpr double kLineTop = -4e-4;
 
-const Vec3 kLight = Vec3(0.45, -0.35, 1).normalized();  // where shadows come from
+const Vec3 kLight = Vec3(-0.4, -0.3, 1).normalized();  // where the light comes from
 
 TriangleSoup slab(const Box3& box) {
   TriangleSoup soup;
@@ -81,6 +81,31 @@ void add_standing(OwnedScene& scene, const Mesh& mesh, const Pose& pose, const C
     shadow.set_point(vertex, point);
   }
   add_owned(scene, std::move(shadow), kShadow);
+}
+
+Camera distant_camera(const std::vector<Box3>& boxes, const Vec3& direction, int width,
+                      int height) {
+  constexpr double kFieldOfView = 0.14;  // radians, vertical
+  constexpr double kMargin = 1.06;
+  const Vec3 ahead = direction.normalized();
+  const Vec3 right = ahead.cross(Vec3::UnitZ()).normalized();
+  const Vec3 up = right.cross(ahead);
+
+  Box3 seen;  // the boxes along right, up and ahead
+  for (const Box3& box : boxes)
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner = box.corner(static_cast<Box3::CornerType>(i));
+      seen.extend(Vec3(corner.dot(right), corner.dot(up), corner.dot(ahead)));
+    }
+  const Vec3 centre = seen.center();
+  const Vec3 half = seen.sizes() / 2;
+  const double reach = kMargin * std::max(half.y(), half.x() * height / width);
+
+  Camera camera;
+  camera.target = centre.x() * right + centre.y() * up + centre.z() * ahead;
+  camera.eye = camera.target - (half.z() + reach / std::tan(kFieldOfView / 2)) * ahead;
+  camera.field_of_view = kFieldOfView;
+  return camera;
 }
 
 }  // namespace packmerger

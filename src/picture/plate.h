@@ -1,4 +1,5 @@
-// The plate, its grid and the build volume, as preview.png shows them. For this folder only.
+// The plate, its grid, the build volume and the camera of this folder's pictures. For this folder
+// only.
 #pragma once
 
 #include <memory>
@@ -24,5 +25,9 @@ void add_volume(OwnedScene& scene, const Box3& box);
 // Adds a mesh and the shadow it throws on z = 0, as far as the shadow falls on the plate.
 void add_standing(OwnedScene& scene, const Mesh& mesh, const Pose& pose, const Colour& colour,
                   const Box3& plate);
+
+// Looks along `direction` at all the boxes, which just fit the image, from so far away that things
+// beside each other look equally large. direction: not vertical.
+Camera distant_camera(const std::vector<Box3>& boxes, const Vec3& direction, int width, int height);
 
 }  // namespace packmerger

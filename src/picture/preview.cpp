@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWidth = 1800;
 constexpr int kHeight = 1000;
-const Vec3 kView(0.42, 1, -0.62);  // from the front left, from above
+const Vec3 kView(0.22, 1, -0.62);  // from the front left, from above
 
 // The models as their files stand, one beside the other, on a plate of their own that ends at
 // x = right_mm. Returns what they cover.
@@ -56,8 +56,8 @@ Image preview_picture(const Job& job) {
   const Vec3 build = job.profile.build();
   const double apart = 0.12 * build.x();
   OwnedScene scene;
-  Box3 all;
-  if (!job.models.empty()) all.extend(add_models(scene, job, -apart));
+  std::vector<Box3> all;
+  if (!job.models.empty()) all.push_back(add_models(scene, job, -apart));
   for (int tray = 1; tray <= count_trays(job); ++tray) {
     Pose aside = Pose::Identity();
     aside.translation().x() = (tray - 1) * (build.x() + apart);
@@ -67,10 +67,9 @@ Image preview_picture(const Job& job) {
     for (const JobPart& part : job.parts)
       if (part.tray == tray)
         add_standing(scene, part.surface, aside * part.pose, part_colour(part.id - 1), volume);
-    all.extend(volume);
+    all.push_back(volume);
   }
-  const double aspect = static_cast<double>(kWidth) / kHeight;
-  return draw(scene.scene, camera_looking_at(all, kView, aspect), kWidth, kHeight);
+  return draw(scene.scene, distant_camera(all, kView, kWidth, kHeight), kWidth, kHeight);
 }
 
 }  // namespace packmerger
