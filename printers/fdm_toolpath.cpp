@@ -146,12 +146,14 @@ TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray,
   }
   progress.check();
   const SupportMeasure support = support_measure(parts, angle);
-  result.time_s +=
-      support_time_s(settings, profile.layer_mm, support.volume_mm3, support.interface_mm2);
+  const double bridged = 1 - settings.level_support_fraction;
+  const double held_mm3 = support.volume_mm3 - bridged * support.level_volume_mm3;
+  const double held_mm2 = support.interface_mm2 - bridged * support.level_interface_mm2;
+  result.time_s += support_time_s(settings, profile.layer_mm, held_mm3, held_mm2);
   result.model_mm3 = path_mm * bead(settings, profile.layer_mm).area_mm2;
   result.model_g = result.model_mm3 / 1000 * profile.material.model_density_g_cm3;
   result.support_mm3 = support.volume_mm3;
-  result.support_g = support.volume_mm3 * settings.support_fill_fraction / 1000 *
+  result.support_g = held_mm3 * settings.support_fill_fraction / 1000 *
                      profile.material.support_density_g_cm3;
   return result;
 }

@@ -13,6 +13,7 @@ namespace {
 constexpr int kVolumeLines = 1 << 20;
 constexpr int kBandRows = 8;             // rows one task reads
 constexpr double kHalfUnitsPerExtent = 0x1p29;
+constexpr double kLevelTangent = 0.0875;  // of 5°
 constexpr double kSineTolerance = 1e-6;  // so that a facet at the support angle itself needs none
 
 // x and y of a corner in whole half-units: corners are even, lines odd, so no line meets a corner.
@@ -24,6 +25,7 @@ struct Facet {
   std::array<double, 3> z_mm;
   std::int64_t twice_area;  // signed: positive seen from above counter-clockwise (an upper facet)
   bool supported;           // needs support, if matter is entered here
+  bool level;
 };
 
 struct Crossing {
@@ -31,6 +33,7 @@ struct Crossing {
   double z_mm;
   int step;  // +1 enters matter from below, −1 leaves it
   bool supported;
+  bool level;
 };
 
 // Where a line meets the facets' plane coordinates.
@@ -66,10 +69,12 @@ std::vector<Facet> facets_of(const std::vector<const Mesh*>& parts, const Roundi
   for (const Mesh* part : parts) {
     for (const auto face : part->faces()) {
       const auto [a, b, c] = corners(*part, face);
+      const Vec3 normal = (b - a).cross(c - a);
       Facet facet{{rounding.corner(a), rounding.corner(b), rounding.corner(c)},
                   {a.z(), b.z(), c.z()},
                   0,
-                  needs_support((b - a).cross(c - a), support_angle)};
+                  needs_support(normal, support_angle),
+                  normal.head<2>().norm() < kLevelTangent * -normal.z()};
       facet.twice_area = side(facet.corner[0], facet.corner[1], facet.corner[2]);
       if (facet.twice_area != 0) facets.push_back(facet);
     }
@@ -175,7 +180,7 @@ class Reader {
       const double u = static_cast<double>(side(b, c, point)) / area;
       const double v = static_cast<double>(side(c, a, point)) / area;
       const double z = u * facet.z_mm[0] + v * facet.z_mm[1] + (1 - u - v) * facet.z_mm[2];
-      found.push_back({column, z, upper ? -1 : 1, facet.supported});
+      found.push_back({column, z, upper ? -1 : 1, facet.supported, facet.level});
     }
   }
 
@@ -200,11 +205,20 @@ std::vector<SupportSpan> spans_of(const std::vector<Crossing>& crossings) {
       floor_mm = 0;
     }
     if (depth == 0 && crossing.step > 0 && crossing.supported && crossing.z_mm > floor_mm)
-      spans.push_back({column, floor_mm, crossing.z_mm});
+      spans.push_back({column, floor_mm, crossing.z_mm, crossing.level});
     depth += crossing.step;
     if (depth == 0) floor_mm = std::max(floor_mm, crossing.z_mm);
   }
   return spans;
+}
+
+void add(const SupportSpan& span, double cell_mm2, SupportMeasure& sum) {
+  const double volume_mm3 = (span.high_mm - span.low_mm) * cell_mm2;
+  sum.volume_mm3 += volume_mm3;
+  sum.interface_mm2 += cell_mm2;
+  if (!span.level) return;
+  sum.level_volume_mm3 += volume_mm3;
+  sum.level_interface_mm2 += cell_mm2;
 }
 
 }  // namespace
@@ -244,21 +258,20 @@ void for_each_support_row(
 
 SupportMeasure support_measure(const std::vector<const Mesh*>& parts, double support_angle) {
   const SupportGrid grid = support_grid(parts, kVolumeLines);
-  std::vector<double> length_mm(grid.rows, 0.0);
-  std::vector<std::size_t> tops(grid.rows, 0);
+  const double cell_mm2 = grid.cell_mm.prod();
+  std::vector<SupportMeasure> rows(grid.rows);
   for_each_support_row(parts, grid, support_angle,
                        [&](int row, const std::vector<SupportSpan>& spans) {
-                         for (const SupportSpan& span : spans)
-                           length_mm[row] += span.high_mm - span.low_mm;
-                         tops[row] = spans.size();
+                         for (const SupportSpan& span : spans) add(span, cell_mm2, rows[row]);
                        });
-  SupportMeasure measure;
-  const double cell_mm2 = grid.cell_mm.prod();
-  for (int row = 0; row < grid.rows; ++row) {
-    measure.volume_mm3 += length_mm[row] * cell_mm2;
-    measure.interface_mm2 += static_cast<double>(tops[row]) * cell_mm2;
+  SupportMeasure sum;
+  for (const SupportMeasure& row : rows) {
+    sum.volume_mm3 += row.volume_mm3;
+    sum.interface_mm2 += row.interface_mm2;
+    sum.level_volume_mm3 += row.level_volume_mm3;
+    sum.level_interface_mm2 += row.level_interface_mm2;
   }
-  return measure;
+  return sum;
 }
 
 double support_volume_mm3(const std::vector<const Mesh*>& parts, double support_angle) {

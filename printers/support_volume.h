@@ -19,6 +19,9 @@ namespace packmerger {
 struct SupportMeasure {
   double volume_mm3 = 0;     // V_s
   double interface_mm2 = 0;  // where support touches the facets it holds, seen from above
+  // Of these, what lies below level facets: many slicers bridge those instead.
+  double level_volume_mm3 = 0;
+  double level_interface_mm2 = 0;
 };
 
 // parts: closed meshes in tray coordinates (mm, z = 0 the plate); they may touch,
@@ -40,6 +43,7 @@ struct SupportSpan {
   int column = 0;      // of the grid
   double low_mm = 0;   // z of the matter or the tray below
   double high_mm = 0;  // z of the facet above; high_mm > low_mm
+  bool level = false;  // that facet lies within 5° of the horizontal
 };
 
 // The box of the contents seen from above, divided into equal, nearly square cells; one vertical

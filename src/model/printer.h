@@ -81,10 +81,11 @@ struct FdmSettings {
   double min_layer_s = 12;
   double min_speed_mm_s = 24;
   double support_spacing_mm = 2.5;
-  double overhead_factor = 0.27;          // k
-  double support_time_factor = 0.5;       // c_s
+  double overhead_factor = 0.22;          // k
+  double support_time_factor = 4.1;       // c_s
   double interface_s_per_mm2 = 0.8;       // c_i, per layer-mm² of interface
   double support_fill_fraction = 1;       // of V_s that is really deposited
+  double level_support_fraction = 1;      // of that, below level facets, where slicers bridge
 };
 
 struct MaterialSettings {

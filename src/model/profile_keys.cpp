@@ -190,7 +190,9 @@ void add_fdm(FdmSettings& s, std::vector<Key>& keys) {
        {"fdm.interface_s_per_mm2", NumberKey{&s.interface_s_per_mm2, from_to(0, 60)}, "s/mm²",
         "c_i: time for every mm² of interface between support and part, per layer."},
        {"fdm.support_fill_fraction", NumberKey{&s.support_fill_fraction, from_to(0, 10)}, "of V_s",
-        "Share of the supported volume that is really deposited."}});
+        "Share of the supported volume that is really deposited."},
+       {"fdm.level_support_fraction", NumberKey{&s.level_support_fraction, from_to(0, 1)}, "",
+        "Share of that left below level facets, which slicers bridge (time = \"toolpath\")."}});
 }
 
 void add_material(MaterialSettings& s, std::vector<Key>& keys) {
