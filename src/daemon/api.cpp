@@ -1,0 +1,128 @@
+#include "daemon/api.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "daemon/job_view.h"
+
+namespace packmerger {
+namespace {
+
+using nlohmann::json;
+using Verb = json (*)(Foreman&, const json&);
+
+constexpr int kDefaultJobs = 100;
+constexpr int kMostJobs = 1000;
+
+[[noreturn]] void not_understood(const std::string& what) {
+  throw Error(Fault::kUsage, what, "docs/DAEMON.md lists the requests.");
+}
+
+std::int64_t whole_number(const json& request, const char* key, std::int64_t otherwise) {
+  const auto found = request.find(key);
+  if (found == request.end()) return otherwise;
+  if (!found->is_number_integer()) not_understood(std::string(key) + " must be a whole number");
+  return found->get<std::int64_t>();
+}
+
+std::int64_t id_of(const json& request) {
+  const std::int64_t id = whole_number(request, "id", 0);
+  if (id < 1) not_understood("The request needs the job's id");
+  return id;
+}
+
+std::string name_of(const json& request) {
+  const auto found = request.find("name");
+  if (found == request.end() || !found->is_string())
+    not_understood("The request needs the printer's name");
+  return found->get<std::string>();
+}
+
+json list_jobs(Foreman& foreman, const json& request) {
+  const std::int64_t limit = whole_number(request, "limit", kDefaultJobs);
+  if (limit < 1 || limit > kMostJobs) not_understood("limit must be from 1 to 1000");
+  json jobs = json::array();
+  for (const JobRecord& job : foreman.store().newest(static_cast<int>(limit)))
+    jobs.push_back(job_view(foreman, job));
+  return jobs;
+}
+
+json show_job(Foreman& foreman, const json& request) {
+  const std::optional<JobRecord> job = foreman.store().find(id_of(request));
+  if (!job)
+    throw Error(Fault::kNoInput, "There is no job " + std::to_string(id_of(request)),
+                "packmerger jobs list shows them.");
+  return job_view_with_history(foreman, *job);
+}
+
+template <JobRecord (Foreman::*act)(std::int64_t)>
+json change_job(Foreman& foreman, const json& request) {
+  return job_view(foreman, (foreman.*act)(id_of(request)));
+}
+
+json list_printers(Foreman& foreman, const json&) {
+  json printers = json::array();
+  for (const PrinterConfig& printer : foreman.config().printers)
+    printers.push_back(printer_view(foreman, printer));
+  return printers;
+}
+
+json view_of(const Foreman& foreman, const PrinterRecord& printer) {
+  return printer_view(foreman, *foreman.config().printer(printer.name));
+}
+
+json clear_printer(Foreman& foreman, const json& request) {
+  return view_of(foreman, foreman.clear(name_of(request)));
+}
+
+template <bool paused>
+json pause_printer(Foreman& foreman, const json& request) {
+  return view_of(foreman, foreman.pause(name_of(request), paused));
+}
+
+const std::map<std::string, Verb, std::less<>>& verbs() {
+  static const std::map<std::string, Verb, std::less<>> kVerbs = {
+      {"jobs.list", list_jobs},
+      {"jobs.show", show_job},
+      {"jobs.approve", change_job<&Foreman::approve>},
+      {"jobs.hold", change_job<&Foreman::hold>},
+      {"jobs.cancel", change_job<&Foreman::cancel>},
+      {"jobs.again", change_job<&Foreman::again>},
+      {"printers.list", list_printers},
+      {"printers.clear", clear_printer},
+      {"printers.pause", pause_printer<true>},
+      {"printers.resume", pause_printer<false>},
+  };
+  return kVerbs;
+}
+
+json result_of(Foreman& foreman, std::string_view text) {
+  const json request = json::parse(text, nullptr, false);
+  if (!request.is_object()) not_understood("The request is not a JSON object on one line");
+  const auto name = request.find("verb");
+  if (name == request.end() || !name->is_string()) not_understood("The request has no verb");
+  const auto verb = verbs().find(name->get<std::string>());
+  if (verb == verbs().end()) not_understood("The request's verb is unknown");
+  return verb->second(foreman, request);
+}
+
+json error_view(Fault fault, const std::string& what, const std::string& hint) {
+  return {{"ok", false},
+          {"error", {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}}}};
+}
+
+}  // namespace
+
+std::string answer(Foreman& foreman, std::string_view request) {
+  json reply;
+  try {
+    reply = {{"ok", true}, {"result", result_of(foreman, request)}};
+  } catch (const Error& error) {
+    reply = error_view(error.fault(), error.what(), error.hint());
+  } catch (const std::exception& error) {
+    reply = error_view(Fault::kInternal, error.what(), "Look into the daemon's messages.");
+  }
+  return reply.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace packmerger

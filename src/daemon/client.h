@@ -1,0 +1,17 @@
+// Speaking to a running daemon from another program.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace packmerger {
+
+// $PACKMERGER_SOCKET, or the socket in the user's own state folder, or, where only that one is
+// there, that of the system's daemon in /var/lib/packmerger.
+std::filesystem::path default_socket();
+
+// Sends one request and returns the reply's result. Throws Error{kUnavailable} when no daemon
+// answers there, and the daemon's own Error when it refuses.
+nlohmann::json ask_daemon(const std::filesystem::path& socket, const nlohmann::json& request);
+
+}  // namespace packmerger

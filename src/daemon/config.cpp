@@ -1,0 +1,362 @@
+#include "daemon/config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/process.h"
+
+namespace packmerger {
+namespace {
+
+constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
+constexpr std::size_t kMaxSocketPath = 107;  // sun_path of unix(7), less its final zero
+
+[[noreturn]] void refuse(const fs::path& file, int line, const std::string& what) {
+  throw Error(Fault::kBadProfile, file.string() + ":" + std::to_string(line) + ": " + what,
+              "Correct the line; docs/DAEMON.md lists every key.");
+}
+
+int line_of(const toml::node& node) {
+  return std::max(1, static_cast<int>(node.source().begin.line));
+}
+
+// Walks one table: every key is named once, with what it takes; a key nobody named is an error.
+// Without a table it only collects the names, for daemon_keys().
+class TableReader {
+ public:
+  TableReader(const fs::path& file, const toml::table* table, std::string prefix,
+              std::vector<DaemonKey>* keys)
+      : file_(file), table_(table), prefix_(std::move(prefix)), keys_(keys) {}
+
+  // take(node) returns false for a value of the wrong type or out of its range.
+  void key(const std::string& name, const std::string& expected,
+           const std::function<bool(const toml::node&)>& take) {
+    known_.insert(name);
+    if (keys_ != nullptr) keys_->push_back({prefix_ + name, expected});
+    const toml::node* node = table_ != nullptr ? table_->get(name) : nullptr;
+    if (node != nullptr && !take(*node))
+      refuse(file_, line_of(*node), prefix_ + name + ": expected " + expected);
+  }
+
+  void number(const std::string& name, double least, double most, const std::string& expected,
+              const std::function<void(double)>& set) {
+    key(name, expected, [&](const toml::node& node) {
+      const auto value = node.value<double>();
+      if (!node.is_number() || !value || !(*value >= least && *value <= most)) return false;
+      set(*value);
+      return true;
+    });
+  }
+
+  void integer(const std::string& name, std::int64_t least, std::int64_t most,
+               const std::string& expected, const std::function<void(std::int64_t)>& set) {
+    key(name, expected, [&](const toml::node& node) {
+      const auto value = node.value_exact<std::int64_t>();
+      if (!value || *value < least || *value > most) return false;
+      set(*value);
+      return true;
+    });
+  }
+
+  void text(const std::string& name, const std::string& expected,
+            const std::function<bool(const std::string&)>& set) {
+    key(name, expected, [&](const toml::node& node) {
+      const auto value = node.value_exact<std::string>();
+      return value && !value->empty() && value->find('\0') == std::string::npos && set(*value);
+    });
+  }
+
+  void flag(const std::string& name, const std::function<void(bool)>& set) {
+    key(name, "true or false", [&](const toml::node& node) {
+      const auto value = node.value_exact<bool>();
+      if (value) set(*value);
+      return value.has_value();
+    });
+  }
+
+  void done() const {
+    if (table_ == nullptr) return;
+    for (const auto& [name, node] : *table_)
+      if (!known_.contains(std::string(name.str())))
+        refuse(file_, line_of(node), "unknown key " + prefix_ + std::string(name.str()));
+  }
+
+ private:
+  const fs::path& file_;
+  const toml::table* table_;
+  std::string prefix_;
+  std::vector<DaemonKey>* keys_;
+  std::set<std::string> known_;
+};
+
+fs::path resolved(const fs::path& file, const std::string& text) {
+  return (fs::absolute(file).parent_path() / text).lexically_normal();
+}
+
+bool is_printer_name(std::string_view text) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  };
+  return !text.empty() && text.size() <= 64 && text.front() != '.' &&
+         std::all_of(text.begin(), text.end(), fits);
+}
+
+void read_prepare(TableReader& reader, const fs::path& file, PrepareConfig& prepare) {
+  reader.text("program", "the path of a program", [&](const std::string& text) {
+    prepare.program = resolved(file, text);
+    return true;
+  });
+  reader.number("time_s", 1, 1e6, "a number from 1 to 1000000 (s)",
+                [&](double value) { prepare.time_s = value; });
+  reader.integer("memory_bytes", std::int64_t{1} << 28, std::int64_t{1} << 50,
+                 "an integer from 268435456 (256 MiB) to 2^50 (bytes)", [&](std::int64_t value) {
+                   prepare.memory_bytes = static_cast<std::uint64_t>(value);
+                 });
+  reader.integer("nice", 0, 19, "an integer from 0 to 19",
+                 [&](std::int64_t value) { prepare.nice = static_cast<int>(value); });
+  reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), "an integer from 0 up",
+                 [&](std::int64_t value) { prepare.seed = value; });
+  reader.number("budget_s", 0.001, 1e6, "a number above 0 to 1000000 (s)",
+                [&](double value) { prepare.budget_s = value; });
+  reader.done();
+}
+
+void read_watch(TableReader& reader, WatchConfig& watch) {
+  reader.number("rescan_s", 0.1, 3600, "a number from 0.1 to 3600 (s)",
+                [&](double value) { watch.rescan_s = value; });
+  reader.number("still_s", 0, 3600, "a number from 0 to 3600 (s)",
+                [&](double value) { watch.still_s = value; });
+  reader.number("give_up_s", 0, 86400, "a number from 0 to 86400 (s)",
+                [&](double value) { watch.give_up_s = value; });
+  reader.done();
+}
+
+// What packmerger prepare is told beside the model, the profile and where to write.
+void read_prepare_options(TableReader& reader, PrinterConfig& printer) {
+  std::vector<std::string>& options = printer.prepare_options;
+  const auto add = [&](const std::string& option, const std::string& value) {
+    options.insert(options.end(), {option, value});
+  };
+  reader.text("units", "one of mm, cm, m, in", [&](const std::string& text) {
+    add("--units", text);
+    return text == "mm" || text == "cm" || text == "m" || text == "in";
+  });
+  reader.number("size_mm", 0.001, 1e6, "a number above 0 to 1000000 (mm)",
+                [&](double value) { add("--size", fmt::format("{}", value)); });
+  reader.number("scale", 1e-6, 1e6, "a number from 0.000001 to 1000000",
+                [&](double value) { add("--scale", fmt::format("{}", value)); });
+  reader.text("variant", "one of packed, hollow, solid, cheapest", [&](const std::string& text) {
+    printer.variant = text;
+    add("--variant", text);
+    return text == "packed" || text == "hollow" || text == "solid" || text == "cheapest";
+  });
+  reader.flag("split", [&](bool value) {
+    if (!value) options.push_back("--no-split");
+  });
+  reader.flag("hollow", [&](bool value) {
+    if (!value) options.push_back("--no-hollow");
+  });
+  reader.key("set", "a list of texts \"key=value\" that the profile takes",
+             [&](const toml::node& node) {
+               const toml::array* list = node.as_array();
+               if (list == nullptr) return false;
+               for (const toml::node& item : *list) {
+                 const auto text = item.value_exact<std::string>();
+                 if (!text) return false;
+                 add("--set", *text);
+               }
+               return true;
+             });
+}
+
+void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig& printer) {
+  reader.text("profile", "a profile's id or the path of a .toml file",
+              [&](const std::string& text) {
+                const bool is_path = text.find('/') != std::string::npos || text.ends_with(".toml");
+                printer.profile = is_path ? resolved(file, text).string() : text;
+                return true;
+              });
+  reader.text("folder", "the path of a folder", [&](const std::string& text) {
+    printer.folder = resolved(file, text);
+    return true;
+  });
+  reader.text("port", "a device such as /dev/serial/by-id/…", [&](const std::string& text) {
+    printer.port = text;
+    return true;
+  });
+  reader.text("handoff_folder", "the path of a folder", [&](const std::string& text) {
+    printer.handoff_folder = resolved(file, text);
+    return true;
+  });
+  reader.text("approve", "\"auto\" or \"ask\"", [&](const std::string& text) {
+    printer.approve = text == "auto" ? Approve::kAuto : Approve::kAsk;
+    return text == "auto" || text == "ask";
+  });
+  reader.flag("simulated", [&](bool value) { printer.simulated = value; });
+  read_prepare_options(reader, printer);
+  reader.done();
+}
+
+// What the profile's abilities ask for.
+void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
+  const std::string table = "[printer." + printer.name + "]";
+  if (printer.profile.empty()) refuse(file, line, table + " needs the key profile");
+  try {
+    printer.abilities = read_profile(printer.profile);
+    Profile trial = printer.abilities;
+    for (std::size_t i = 0; i + 1 < printer.prepare_options.size(); ++i)
+      if (printer.prepare_options[i] == "--set")
+        set_profile_key(trial, printer.prepare_options[i + 1]);
+  } catch (const Error& error) {
+    refuse(file, line, table + ": " + error.what());
+  }
+  if (printer.hands_over() && printer.handoff_folder.empty())
+    refuse(file, line, table + " needs the key handoff_folder: this printer takes no job by wire");
+  if (printer.hands_over() && !printer.port.empty())
+    refuse(file, line, table + " cannot have a port: this printer takes no job by wire");
+  if (!printer.hands_over() && printer.port.empty())
+    refuse(file, line, table + " needs the key port");
+  if (!printer.hands_over() && !printer.handoff_folder.empty())
+    refuse(file, line, table + " cannot have a handoff_folder: this printer is sent its job");
+}
+
+void read_printers(const fs::path& file, const toml::table& table, DaemonConfig& config) {
+  std::set<fs::path> folders;
+  std::set<std::string> ports;
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    const int line = line_of(node);
+    if (!is_printer_name(name))
+      refuse(file, line, "printer." + name + ": expected a name of letters, digits, - _ and .");
+    if (!node.is_table()) refuse(file, line, "expected a table [printer." + name + "]");
+    PrinterConfig printer;
+    printer.name = name;
+    printer.folder = config.state / "folders" / name;
+    TableReader reader(file, node.as_table(), "printer." + name + ".", nullptr);
+    read_printer_keys(reader, file, printer);
+    check_printer(file, line, printer);
+    if (!folders.insert(printer.folder).second)
+      refuse(file, line, "[printer." + name + "] watches the folder of another printer");
+    if (!printer.port.empty() && !ports.insert(printer.port).second)
+      refuse(file, line, "[printer." + name + "] has the port of another printer");
+    config.printers.push_back(std::move(printer));
+  }
+}
+
+void read_top(TableReader& reader, const fs::path& file, DaemonConfig& config) {
+  reader.text("state", "the path of a folder", [&](const std::string& text) {
+    config.state = resolved(file, text);
+    return true;
+  });
+  reader.text("socket", "a path of at most 107 bytes", [&](const std::string& text) {
+    config.socket = resolved(file, text);
+    return config.socket.string().size() <= kMaxSocketPath;
+  });
+  reader.text("socket_mode", "\"0600\" or \"0660\"", [&](const std::string& text) {
+    config.socket_mode = text == "0660" ? 0660 : 0600;
+    return text == "0600" || text == "0660";
+  });
+  reader.number("retry_s", 0.1, 86400, "a number from 0.1 to 86400 (s)",
+                [&](double value) { config.retry_s = value; });
+}
+
+toml::table parse(const fs::path& file) {
+  try {
+    const std::string text = read_file(file, kMaxConfigBytes);
+    return toml::parse(std::string_view(text), file.string());
+  } catch (const toml::parse_error& error) {
+    refuse(file, std::max(1, static_cast<int>(error.source().begin.line)),
+           std::string(error.description()));
+  } catch (const Error& error) {
+    if (error.fault() == Fault::kNoInput) throw;
+    refuse(file, 1, error.what());
+  }
+}
+
+const toml::table* table_in(const fs::path& file, const toml::table& table, const char* name) {
+  const toml::node* node = table.get(name);
+  if (node == nullptr) return nullptr;
+  if (!node->is_table())
+    refuse(file, line_of(*node), std::string("expected a table [") + name + "]");
+  return node->as_table();
+}
+
+}  // namespace
+
+const PrinterConfig* DaemonConfig::printer(const std::string& name) const {
+  const auto found =
+      std::find_if(printers.begin(), printers.end(),
+                   [&](const PrinterConfig& printer) { return printer.name == name; });
+  return found == printers.end() ? nullptr : &*found;
+}
+
+DaemonConfig read_config(const fs::path& file) {
+  const toml::table table = parse(file);
+  DaemonConfig config;
+  config.state = default_state_folder();
+  config.prepare.program = program_folder() / "packmerger";
+  TableReader top(file, &table, "", nullptr);
+  read_top(top, file, config);
+  const auto any = [](const toml::node&) { return true; };
+  for (const char* name : {"prepare", "watch", "printer"}) top.key(name, "a table", any);
+  top.done();
+  if (const toml::table* prepare = table_in(file, table, "prepare")) {
+    TableReader reader(file, prepare, "prepare.", nullptr);
+    read_prepare(reader, file, config.prepare);
+  }
+  if (const toml::table* watch = table_in(file, table, "watch")) {
+    TableReader reader(file, watch, "watch.", nullptr);
+    read_watch(reader, config.watch);
+  }
+  if (config.state.empty())
+    refuse(file, 1, "needs the key state: neither STATE_DIRECTORY nor HOME tells where to keep it");
+  if (config.socket.empty()) config.socket = socket_in(config.state);
+  if (config.socket.string().size() > kMaxSocketPath)
+    refuse(file, 1, "needs the key socket: " + config.socket.string() + " is too long for one");
+  if (const toml::table* printers = table_in(file, table, "printer"))
+    read_printers(file, *printers, config);
+  if (config.printers.empty()) refuse(file, 1, "needs at least one table [printer.NAME]");
+  return config;
+}
+
+fs::path default_state_folder() {
+  const auto variable = [](const char* name) {
+    const char* text = std::getenv(name);
+    return fs::path(text != nullptr ? text : "");
+  };
+  if (const fs::path given = variable("STATE_DIRECTORY"); given.is_absolute()) return given;
+  if (const fs::path base = variable("XDG_STATE_HOME"); base.is_absolute())
+    return base / "packmerger";
+  const fs::path home = variable("HOME");
+  return home.is_absolute() ? home / ".local/state/packmerger" : fs::path();
+}
+
+fs::path socket_in(const fs::path& state) { return state / "packmergerd.sock"; }
+
+std::vector<DaemonKey> daemon_keys() {
+  const fs::path file;
+  std::vector<DaemonKey> keys;
+  DaemonConfig config;
+  PrinterConfig printer;
+  TableReader top(file, nullptr, "", &keys);
+  read_top(top, file, config);
+  TableReader prepare(file, nullptr, "prepare.", &keys);
+  read_prepare(prepare, file, config.prepare);
+  TableReader watch(file, nullptr, "watch.", &keys);
+  read_watch(watch, config.watch);
+  TableReader printers(file, nullptr, "printer.NAME.", &keys);
+  read_printer_keys(printers, file, printer);
+  return keys;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,79 @@
+// The daemon's settings: one TOML file. docs/DAEMON.md lists every key.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/printer.h"
+
+namespace packmerger {
+
+enum class Approve { kAsk, kAuto };
+
+// Limits and choices of the child process that prepares a job.
+struct PrepareConfig {
+  std::filesystem::path program;  // packmerger beside the daemon unless configured
+  double time_s = 3600;           // longest a job may take
+  std::uint64_t memory_bytes = std::uint64_t{8} << 30;  // of address space, for each process
+  int nice = 10;
+  std::int64_t seed = 1;
+  std::optional<double> budget_s;  // packmerger prepare --budget
+};
+
+// When a dropped file counts as whole.
+struct WatchConfig {
+  double rescan_s = 5;    // how often a folder is read again although nothing was reported
+  double still_s = 1;     // a file must not have changed for so long
+  double give_up_s = 60;  // a file that looks cut short is taken after so long, and refused then
+};
+
+struct PrinterConfig {
+  std::string name;
+  std::string profile;                   // an id, or the absolute path of a TOML file
+  Profile abilities;                     // that profile, as it read at the start
+  std::filesystem::path folder;          // the watched folder
+  std::string port;                      // dialects gcode and s3g
+  std::filesystem::path handoff_folder;  // dialect handoff
+  Approve approve = Approve::kAsk;
+  bool simulated = false;                    // no bed has to be cleared
+  std::vector<std::string> prepare_options;  // for packmerger prepare: --units, --size, …
+  std::string variant = "packed";
+
+  bool hands_over() const { return abilities.dialect == Dialect::kHandoff; }
+  bool has_bed() const { return !simulated && !hands_over(); }
+};
+
+struct DaemonConfig {
+  std::filesystem::path state;  // folder
+  std::filesystem::path socket;
+  unsigned socket_mode = 0600;
+  PrepareConfig prepare;
+  WatchConfig watch;
+  double retry_s = 30;                  // between attempts to reach a printer, or to file a model
+  std::vector<PrinterConfig> printers;  // by name
+
+  const PrinterConfig* printer(const std::string& name) const;
+};
+
+// Relative paths are taken from the file's own folder. Throws Error{kBadProfile} with file, line
+// and what was expected, Error{kNoInput} when there is no such file.
+DaemonConfig read_config(const std::filesystem::path& file);
+
+// $STATE_DIRECTORY, or packmerger below $XDG_STATE_HOME, or ~/.local/state/packmerger.
+std::filesystem::path default_state_folder();
+
+// The socket's name in a state folder.
+std::filesystem::path socket_in(const std::filesystem::path& state);
+
+// One key as docs/DAEMON.md shows it; tables are written as in the file ("prepare.time_s",
+// "printer.NAME.port").
+struct DaemonKey {
+  std::string name;
+  std::string expected;  // type and range
+};
+std::vector<DaemonKey> daemon_keys();
+
+}  // namespace packmerger

@@ -1,0 +1,280 @@
+#include "daemon/foreman.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "daemon/job_view.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+constexpr int kMostDoublings = 4;  // of retry_s
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+std::vector<std::string> prepare_command(const DaemonConfig& config, const PrinterConfig& printer,
+                                         const JobRecord& job) {
+  std::vector<std::string> argv = {config.prepare.program.string(),
+                                   "prepare",
+                                   job.input,
+                                   "--profile",
+                                   printer.profile,
+                                   "--out",
+                                   job.folder,
+                                   "--json",
+                                   "--seed",
+                                   std::to_string(config.prepare.seed)};
+  if (config.prepare.budget_s) {
+    argv.push_back("--budget");
+    argv.push_back(std::to_string(*config.prepare.budget_s));
+  }
+  argv.insert(argv.end(), printer.prepare_options.begin(), printer.prepare_options.end());
+  return argv;
+}
+
+// A folder's name for people: the model's name and the job's number.
+std::string handoff_name(const JobRecord& job) {
+  std::string stem = fs::path(printable(job.name)).stem().string();
+  stem.resize(std::min<std::size_t>(stem.size(), 200));
+  return stem + "-" + std::to_string(job.id);
+}
+
+}  // namespace
+
+double wall_clock_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+Foreman::Foreman(const DaemonConfig& config, JobStore& store, Crew& crew, Log log)
+    : config_(config), store_(store), crew_(crew), log_(std::move(log)) {}
+
+fs::path Foreman::job_path(std::int64_t id) const {
+  return config_.state / "jobs" / std::to_string(id);
+}
+
+void Foreman::say(const JobRecord& job, const std::string& text) const {
+  log_("job " + std::to_string(job.id) + " (" + printable(job.name) + ", " + job.printer +
+       "): " + printable(text));
+}
+
+const LiveJob* Foreman::live(std::int64_t id) const {
+  const auto found = live_.find(id);
+  return found == live_.end() ? nullptr : &found->second;
+}
+
+std::int64_t Foreman::sending_at(const std::string& printer) const {
+  const auto found = sending_.find(printer);
+  return found == sending_.end() ? 0 : found->second;
+}
+
+void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
+                  const std::string& hint, const std::string& note) {
+  job.state = state;
+  job.reason = reason;
+  job.hint = hint;
+  job.ended_s = wall_clock_s();
+  job.filing_done = job.input.empty();
+  store_.save(job, note.empty() ? reason : note);
+  say(job, std::string(state_name(state)) + (reason.empty() ? "" : ": " + reason));
+}
+
+void Foreman::recover() {
+  for (JobRecord job : store_.open_jobs()) {
+    if (job.state == JobState::kClaiming) finish_claim(job);
+    if (job.state != JobState::kSending) continue;
+    const PrinterConfig* printer = config_.printer(job.printer);
+    if (printer != nullptr && printer->hands_over()) {
+      job.state = JobState::kApproved;  // handing over twice gives the same folder
+      store_.save(job, "the daemon was interrupted; handing over again");
+    } else {
+      end(job, JobState::kFailed, "interrupted while printing",
+          "See what the printer did, clear its bed, and print again with packmerger jobs again " +
+              std::to_string(job.id) + ".");
+    }
+  }
+}
+
+bool Foreman::is_refused(const fs::path& file) {
+  std::erase_if(refused_, [&](const auto& item) { return item.second <= now_s_; });
+  return refused_.contains(file);
+}
+
+bool Foreman::arrived(const PrinterConfig& printer, const fs::path& file) {
+  if (stopping_ || is_refused(file)) return false;
+  if (std::any_of(live_.begin(), live_.end(),
+                  [&](const auto& item) { return item.second.fetching_from == file; }))
+    return true;
+  JobRecord job;
+  job.printer = printer.name;
+  job.name = file.filename().string();
+  job.origin = file.string();
+  job.received_s = wall_clock_s();
+  job = store_.add(job);
+  job.input = (job_path(job.id) / "input" / job.name).string();
+  store_.save(job);
+  return claim(job, file);
+}
+
+bool Foreman::claim(JobRecord job, const fs::path& file) {
+  try {
+    if (rename_new(file, job.input) == Moved::kOtherFileSystem) {
+      job.by_copy = true;
+      store_.save(job);
+      live_[job.id].fetching_from = file;
+      crew_.clerk.push(FetchOrder{job.id, file, job.input});
+    } else {
+      finish_claim(job);
+    }
+    return true;
+  } catch (const Error& error) {
+    // what the database could not be told, advance() sees on the disk
+    if (error.fault() != Fault::kNoInput) say(job, error.what() + (" " + error.hint()));
+    if (!is_there(job.input)) forget(job);
+    return error.fault() == Fault::kNoInput;
+  }
+}
+
+void Foreman::forget(const JobRecord& job) {
+  std::error_code ignored;
+  fs::remove_all(job_path(job.id), ignored);
+  store_.forget(job.id);
+  live_.erase(job.id);
+}
+
+// What died while claiming: the file is here, whole, or it never left its place.
+void Foreman::finish_claim(JobRecord job) {
+  if (job.input.empty() || !is_there(job.input)) return forget(job);
+  remove_copied_original(job);
+  job.state = JobState::kReceived;
+  store_.save(job);
+  say(job, "received");
+}
+
+void Foreman::remove_copied_original(const JobRecord& job) const {
+  std::error_code failed;
+  if (!job.by_copy || job.again_of != 0 || !is_there(job.origin)) return;
+  const bool same = fs::file_size(job.origin, failed) == fs::file_size(job.input, failed) &&
+                    !failed && sha256_hex_of_file(job.origin) == sha256_hex_of_file(job.input);
+  if (same) fs::remove(job.origin, failed);
+}
+
+void Foreman::advance(double now_s) {
+  now_s_ = now_s;
+  std::vector<JobRecord> jobs = store_.open_jobs();
+  // a job whose first trays are printed goes before the others
+  std::stable_partition(jobs.begin(), jobs.end(),
+                        [](const JobRecord& job) { return job.next_tray > 1; });
+  for (const JobRecord& job : jobs) step(job);
+  drop_idle_live_jobs(jobs);
+}
+
+void Foreman::drop_idle_live_jobs(const std::vector<JobRecord>& open) {
+  std::set<std::int64_t> ids;
+  for (const JobRecord& job : open) ids.insert(job.id);
+  std::erase_if(live_, [&](const auto& item) {
+    const LiveJob& live = item.second;
+    const bool idle =
+        !live.cancel_prepare && !live.control && !live.with_clerk && live.fetching_from.empty();
+    return idle && !ids.contains(item.first);
+  });
+}
+
+double Foreman::retry_at(int failures) const {
+  return now_s_ + config_.retry_s * (1 << std::min(failures, kMostDoublings));
+}
+
+void Foreman::step(const JobRecord& job) {
+  if (has_ended(job.state)) return file_away(job);
+  if (stopping_) return;
+  switch (job.state) {
+    case JobState::kClaiming:
+      if (live(job.id) == nullptr || live(job.id)->fetching_from.empty()) finish_claim(job);
+      return;
+    case JobState::kReceived:
+    case JobState::kPreparing:
+      return start_preparing(job);
+    case JobState::kReady:
+      return approve_by_itself(job);
+    case JobState::kApproved:
+      return start_sending(job);
+    default:
+      return;
+  }
+}
+
+void Foreman::start_preparing(JobRecord job) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (preparing_ != 0 || printer == nullptr) return;
+  ++job.attempt;
+  const std::string name = job.attempt == 1 ? "job" : "job-" + std::to_string(job.attempt);
+  job.folder = (job_path(job.id) / name).string();
+  job.state = JobState::kPreparing;
+  store_.save(job, job.attempt == 1 ? "" : "attempt " + std::to_string(job.attempt));
+  preparing_ = job.id;
+  LiveJob& live = live_[job.id];
+  live.cancel_prepare = std::make_shared<std::atomic<bool>>(false);
+  crew_.worker.push({job.id, job.input, job.folder, prepare_command(config_, *printer, job),
+                     printer->variant, live.cancel_prepare});
+  say(job, "preparing");
+}
+
+void Foreman::approve_by_itself(JobRecord job) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (printer == nullptr || printer->approve != Approve::kAuto || !job.pays || job.held) return;
+  job.state = JobState::kApproved;
+  job.reason.clear();
+  store_.save(job, "approved by itself: it is the cheapest way");
+  start_sending(job);
+}
+
+void Foreman::start_sending(JobRecord job) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (printer == nullptr || waits_for(*this, job) != Waits::kNothing) return;
+  LiveJob& live = live_[job.id];
+  if (now_s_ < live.retry_s) return;
+  PrinterRecord record = store_.printer(job.printer);
+  if (printer->has_bed()) record.bed_clear = false;
+  job.state = JobState::kSending;
+  job.reason.clear();
+  job.hint.clear();
+  if (job.sending_s == 0) job.sending_s = wall_clock_s();
+  store_.save(job, "tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays),
+              &record);
+  sending_[job.printer] = job.id;
+  live.control = std::make_shared<PrintControl>();
+  live.print = {};
+  crew_.senders.at(job.printer)
+      .push({job.id, job.folder, job.next_tray, handoff_name(job), live.control});
+  say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
+}
+
+// The place is recorded before the file is moved there, so that an interrupted move is finished.
+void Foreman::file_away(JobRecord job) {
+  LiveJob& live = live_[job.id];
+  if (live.with_clerk || preparing_ == job.id || now_s_ < live.retry_s) return;
+  const bool good = job.state == JobState::kDone || job.state == JobState::kHandedOver;
+  if (job.filed.empty() || (is_there(job.input) && is_there(job.filed))) {
+    const fs::path base = fs::path(job.origin).parent_path();
+    job.filed = free_path(base / (good ? "done" : "failed"), job.name).string();
+    store_.save(job);
+  }
+  live.with_clerk = true;
+  crew_.clerk.push(FileOrder{job.id, job.input, job.filed,
+                             note_beside(job.filed, good ? ".result.json" : ".reason.txt"),
+                             good ? result_note(job) : reason_note(job)});
+}
+
+void Foreman::stop() {
+  stopping_ = true;
+  for (auto& [id, live] : live_) {
+    if (live.cancel_prepare) *live.cancel_prepare = true;
+    if (live.control) live.control->cancel();
+  }
+}
+
+}  // namespace packmerger

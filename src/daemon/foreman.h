@@ -1,0 +1,133 @@
+// The owner of all jobs: decides what happens next, writes it into the database, and only then
+// gives the order for it. Runs on the loop's thread alone; it never waits for geometry, for a
+// printer or for another disk.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/messages.h"
+#include "job/job_store.h"
+
+namespace packmerger {
+
+// Unix time.
+double wall_clock_s();
+
+// The queues through which the threads of worker.h get their orders.
+struct Crew {
+  Queue<PrepareOrder> worker;
+  Queue<ClerkOrder> clerk;
+  std::map<std::string, Queue<SendOrder>> senders;  // by printer
+
+  explicit Crew(const DaemonConfig& config) {
+    for (const PrinterConfig& printer : config.printers) senders[printer.name];
+  }
+};
+
+// What is known of a job beyond its record, while the daemon runs.
+struct LiveJob {
+  std::shared_ptr<std::atomic<bool>> cancel_prepare;  // while it is with the worker
+  std::shared_ptr<PrintControl> control;              // while it is with a sender
+  std::filesystem::path fetching_from;                // while the clerk copies it
+  bool with_clerk = false;                            // while the clerk files it
+  std::string stage;                                  // of preparing
+  double fraction = 0;  // of that stage, or of the tray that is printed
+  PrintReport print;
+  int failures = 0;    // to start this tray, or to file the model
+  double retry_s = 0;  // not before, on the clock of advance()
+};
+
+class Foreman {
+ public:
+  using Log = std::function<void(const std::string&)>;
+
+  Foreman(const DaemonConfig& config, JobStore& store, Crew& crew, Log log);
+
+  // Once, at the start: finishes or forgets half-done claims, fails half-sent prints, and sends
+  // half-prepared jobs back to be prepared.
+  void recover();
+
+  // A file in the printer's watched folder is whole. Takes it as a job: recorded, then moved into
+  // the state folder. False when it cannot be taken now; it then stays where it is.
+  bool arrived(const PrinterConfig& printer, const std::filesystem::path& file);
+
+  // Throws Error when the database cannot be written; the event then has to be given again.
+  void handle(const Event& event);
+
+  // Starts whatever can be started. now_s: a clock that never goes back.
+  void advance(double now_s);
+
+  // No further work is started, what runs is told to end. Prints end as failed.
+  void stop();
+
+  // What people ask for. Each returns the job or printer as it is afterwards. Throws
+  // Error{kNoInput} when there is none of that name, Error{kUsage} when it makes no sense in its
+  // state.
+  JobRecord approve(std::int64_t id);  // also ends a hold
+  JobRecord hold(std::int64_t id);
+  JobRecord cancel(std::int64_t id);
+  JobRecord again(std::int64_t id);  // a new job from an ended one; it needs no approval
+  PrinterRecord clear(const std::string& printer);
+  PrinterRecord pause(const std::string& printer, bool paused);
+
+  const DaemonConfig& config() const { return config_; }
+  const JobStore& store() const { return store_; }
+  const LiveJob* live(std::int64_t id) const;
+  // The job that is with the printer's sender; 0: none.
+  std::int64_t sending_at(const std::string& printer) const;
+
+ private:
+  std::filesystem::path job_path(std::int64_t id) const;
+  JobRecord get(std::int64_t id) const;
+  const PrinterConfig& get_printer(const std::string& name) const;
+  void say(const JobRecord& job, const std::string& text) const;
+  void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
+           const std::string& note = {});
+
+  bool claim(JobRecord job, const std::filesystem::path& file);
+  void forget(const JobRecord& job);
+  void finish_claim(JobRecord job);
+  void remove_copied_original(const JobRecord& job) const;
+
+  void on(const PrepareProgress& event);
+  void on(const Hashed& event);
+  void on(const Prepared& event);
+  void on(const PrepareFailed& event);
+  void on(const Fetched& event);
+  void on(const Filed& event);
+  void on(const SendProgress& event);
+  void on(const SendEnded& event);
+  void sent(JobRecord job, const SendEnded& event);
+  void not_started(JobRecord job, const SendEnded& event);
+
+  JobRecord print_again(JobRecord job, const JobRecord& old);
+  JobRecord prepare_again(JobRecord job, const JobRecord& old);
+
+  double retry_at(int failures) const;
+  bool is_refused(const std::filesystem::path& file);
+  void drop_idle_live_jobs(const std::vector<JobRecord>& open);
+  void step(const JobRecord& job);
+  void start_preparing(JobRecord job);
+  void approve_by_itself(JobRecord job);
+  void start_sending(JobRecord job);
+  void file_away(JobRecord job);
+
+  const DaemonConfig& config_;
+  JobStore& store_;
+  Crew& crew_;
+  Log log_;
+  std::map<std::int64_t, LiveJob> live_;
+  std::int64_t preparing_ = 0;                       // the job with the worker
+  std::map<std::string, std::int64_t> sending_;      // the job with each printer's sender
+  std::map<std::filesystem::path, double> refused_;  // files that could not be copied; until when
+  double now_s_ = 0;
+  bool stopping_ = false;
+};
+
+}  // namespace packmerger

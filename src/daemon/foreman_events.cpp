@@ -1,0 +1,155 @@
+// How the foreman takes what the other threads tell.
+#include <algorithm>
+
+#include "daemon/foreman.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+std::string sentence(const Failure& failure) { return printable(failure.what); }
+
+}  // namespace
+
+void Foreman::handle(const Event& event) {
+  std::visit([&](const auto& each) { on(each); }, event);
+}
+
+void Foreman::on(const PrepareProgress& event) {
+  if (preparing_ != event.job) return;
+  live_[event.job].stage = event.stage;
+  live_[event.job].fraction = event.fraction;
+}
+
+void Foreman::on(const Hashed& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (!job || job->state != JobState::kPreparing || job->sha256 == event.sha256) return;
+  std::string note;
+  if (job->again_of != 0 && !job->sha256.empty())
+    note = "the file was changed since job " + std::to_string(job->again_of);
+  job->sha256 = event.sha256;
+  const std::int64_t same = store_.same_bytes(*job);
+  if (same != 0 && same != job->again_of) note = "the same bytes as job " + std::to_string(same);
+  store_.save(*job, note);
+  if (!note.empty()) say(*job, note);
+}
+
+void Foreman::on(const Prepared& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (job && job->state == JobState::kPreparing) {
+    job->state = JobState::kReady;
+    job->trays = event.trays;
+    job->estimates = event.estimates;
+    job->pays = event.pays;
+    job->reason = event.pays ? "" : "another way of printing it is not dearer";
+    store_.save(*job, job->reason);
+    say(*job, "ready");
+  }
+  live_[event.job].cancel_prepare.reset();
+  preparing_ = 0;
+}
+
+void Foreman::on(const PrepareFailed& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  const bool stopped = stopping_ && event.failure.fault == Fault::kInterrupted;
+  if (job && job->state == JobState::kPreparing && !stopped)
+    end(*job, JobState::kFailed, sentence(event.failure), event.failure.hint);
+  live_[event.job].cancel_prepare.reset();
+  preparing_ = 0;
+}
+
+void Foreman::on(const Fetched& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (job && job->state == JobState::kClaiming) {
+    if (event.failure && job->again_of != 0) {
+      job->input.clear();
+      end(*job, JobState::kFailed, sentence(*event.failure), event.failure->hint);
+    } else {
+      if (event.failure) {
+        say(*job, sentence(*event.failure) + ". " + event.failure->hint);
+        refused_[job->origin] = retry_at(0);
+      }
+      finish_claim(*job);
+    }
+  }
+  live_.erase(event.job);
+}
+
+void Foreman::on(const Filed& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  LiveJob& live = live_[event.job];
+  if (event.failure) {
+    if (event.failure->fault == Fault::kBusy && job) {
+      job->filed.clear();
+      store_.save(*job);
+    }
+    if (job) say(*job, "not yet filed: " + sentence(*event.failure) + ". " + event.failure->hint);
+    live.retry_s = retry_at(live.failures++);
+    live.with_clerk = false;
+    return;
+  }
+  if (job) {
+    job->input.clear();
+    job->filing_done = true;
+    store_.save(*job);
+  }
+  live_.erase(event.job);
+}
+
+void Foreman::on(const SendProgress& event) {
+  const auto found = live_.find(event.job);
+  if (found == live_.end() || !found->second.control) return;
+  found->second.print = event.report;
+}
+
+void Foreman::on(const SendEnded& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (!job) return;
+  if (job->state == JobState::kSending) sent(*job, event);
+  live_[event.job].control.reset();
+  live_[event.job].print = {};
+  sending_.erase(job->printer);
+}
+
+void Foreman::sent(JobRecord job, const SendEnded& event) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  const bool handed_over = printer != nullptr && printer->hands_over();
+  if (event.outcome == SendOutcome::kNotStarted) return not_started(job, event);
+  if (event.outcome == SendOutcome::kFailed)
+    return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint);
+  if (event.outcome == SendOutcome::kCancelled) {
+    // a printer that did not obey is worth telling
+    const bool obeyed = event.failure.fault == Fault::kInterrupted;
+    const std::string tail = obeyed ? "" : ": " + sentence(event.failure);
+    if (stopping_)
+      return end(job, JobState::kFailed, "the daemon was stopped while printing" + tail,
+                 "Clear the bed and print again with packmerger jobs again " +
+                     std::to_string(job.id) + ".");
+    return end(job, JobState::kCancelled, "cancelled while printing" + tail,
+               obeyed ? "" : event.failure.hint);
+  }
+  if (handed_over) return end(job, JobState::kHandedOver, "", "", event.note);
+  if (job.next_tray >= job.trays) return end(job, JobState::kDone, "", "");
+  const std::string note = "tray " + std::to_string(job.next_tray) + " is printed";
+  ++job.next_tray;
+  job.state = JobState::kApproved;
+  store_.save(job, note);
+  live_[job.id].failures = 0;
+  say(job, note);
+}
+
+// Nothing was printed: the bed is as clear as it was before, and it is tried again.
+void Foreman::not_started(JobRecord job, const SendEnded& event) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  PrinterRecord record = store_.printer(job.printer);
+  record.bed_clear = record.bed_clear || (printer != nullptr && printer->has_bed());
+  job.state = JobState::kApproved;
+  job.reason = sentence(event.failure);
+  job.hint = event.failure.hint;
+  store_.save(job, job.reason, &record);
+  LiveJob& live = live_[job.id];
+  live.retry_s = retry_at(live.failures++);
+  say(job, "not started: " + job.reason + ". It is tried again.");
+}
+
+}  // namespace packmerger

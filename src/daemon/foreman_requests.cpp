@@ -1,0 +1,141 @@
+// What people ask the foreman for.
+#include "daemon/foreman.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+std::string title(const JobRecord& job) { return "Job " + std::to_string(job.id); }
+
+[[noreturn]] void senseless(const JobRecord& job, const std::string& what,
+                            const std::string& hint) {
+  throw Error(Fault::kUsage, title(job) + " is " + std::string(state_name(job.state)) + what, hint);
+}
+
+}  // namespace
+
+JobRecord Foreman::get(std::int64_t id) const {
+  if (std::optional<JobRecord> job = store_.find(id)) return *job;
+  throw Error(Fault::kNoInput, "There is no job " + std::to_string(id),
+              "packmerger jobs list shows them.");
+}
+
+const PrinterConfig& Foreman::get_printer(const std::string& name) const {
+  if (const PrinterConfig* printer = config_.printer(name)) return *printer;
+  throw Error(Fault::kNoInput, "There is no printer " + printable(name),
+              "packmerger printers list shows them.");
+}
+
+JobRecord Foreman::approve(std::int64_t id) {
+  JobRecord job = get(id);
+  const bool approves = job.state == JobState::kReady;
+  if (!approves && !(job.held && !has_ended(job.state)))
+    senseless(job, " and does not wait for approval",
+              "packmerger jobs show tells what it waits for.");
+  if (approves) {
+    job.state = JobState::kApproved;
+    job.reason.clear();
+  }
+  job.held = false;
+  store_.save(job, approves ? "approved" : "no longer held");
+  say(job, approves ? "approved" : "no longer held");
+  return job;
+}
+
+JobRecord Foreman::hold(std::int64_t id) {
+  JobRecord job = get(id);
+  if (has_ended(job.state)) senseless(job, "", "There is nothing to hold any more.");
+  if (job.state == JobState::kSending)
+    senseless(job, " and cannot be held", "Cancel it with packmerger jobs cancel instead.");
+  if (job.held) return job;
+  job.held = true;
+  store_.save(job, "held");
+  say(job, "held");
+  return job;
+}
+
+JobRecord Foreman::cancel(std::int64_t id) {
+  JobRecord job = get(id);
+  if (has_ended(job.state)) senseless(job, "", "There is nothing to cancel any more.");
+  if (job.state == JobState::kClaiming)
+    throw Error(Fault::kBusy, title(job) + " is just being taken", "Try again in a moment.");
+  const LiveJob* running = live(id);
+  if (job.state == JobState::kSending) {
+    store_.save(job, "cancelling");
+    if (running != nullptr && running->control) running->control->cancel();
+    say(job, "cancelling");
+    return job;
+  }
+  end(job, JobState::kCancelled, "cancelled", "Drop the file again to print it after all.");
+  if (running != nullptr && running->cancel_prepare) *running->cancel_prepare = true;
+  return job;
+}
+
+JobRecord Foreman::again(std::int64_t id) {
+  const JobRecord old = get(id);
+  if (!has_ended(old.state))
+    senseless(old, " and has not ended", "Wait for its end, or cancel it first.");
+  get_printer(old.printer);
+  std::error_code ignored;
+  const bool prepared = old.trays > 0 && fs::exists(fs::path(old.folder) / "job.json", ignored);
+  if (!prepared && !(old.filing_done && fs::exists(old.filed, ignored)))
+    throw Error(
+        Fault::kNoInput,
+        "Neither the program nor the model of job " + std::to_string(id) + " is there any more",
+        "Drop the model into the watched folder again.");
+  JobRecord job;
+  job.printer = old.printer;
+  job.name = old.name;
+  job.sha256 = old.sha256;
+  job.again_of = id;
+  job.received_s = wall_clock_s();
+  return prepared ? print_again(job, old) : prepare_again(job, old);
+}
+
+JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
+  job.state = JobState::kReady;
+  job.folder = old.folder;
+  job.trays = old.trays;
+  job.estimates = old.estimates;
+  job.pays = old.pays;
+  job = store_.add(job);
+  job.state = JobState::kApproved;
+  store_.save(job, "the program of job " + std::to_string(old.id) + " again");
+  say(job, "job " + std::to_string(old.id) + " again");
+  return job;
+}
+
+JobRecord Foreman::prepare_again(JobRecord job, const JobRecord& old) {
+  job.origin = old.origin;
+  job.by_copy = true;
+  job = store_.add(job);
+  job.input = (job_path(job.id) / "input" / job.name).string();
+  store_.save(job, "the file of job " + std::to_string(old.id) + " again");
+  live_[job.id].fetching_from = old.filed;
+  crew_.clerk.push(FetchOrder{job.id, old.filed, job.input, true});
+  say(job, "job " + std::to_string(old.id) + " again");
+  return job;
+}
+
+PrinterRecord Foreman::clear(const std::string& name) {
+  get_printer(name);
+  if (sending_at(name) != 0)
+    throw Error(Fault::kBusy, "The printer " + name + " is printing",
+                "Say that its bed is clear once the print has ended and was taken out.");
+  PrinterRecord printer = store_.printer(name);
+  printer.bed_clear = true;
+  store_.save(printer);
+  log_("printer " + name + ": its bed is clear");
+  return printer;
+}
+
+PrinterRecord Foreman::pause(const std::string& name, bool paused) {
+  get_printer(name);
+  PrinterRecord printer = store_.printer(name);
+  printer.paused = paused;
+  store_.save(printer);
+  log_("printer " + name + (paused ? ": paused, no new print starts" : ": resumed"));
+  return printer;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,87 @@
+#include "daemon/job_folder.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+
+namespace packmerger {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
+constexpr int kMaxTrays = 10000;
+
+json read_report(const fs::path& folder) {
+  const fs::path file = folder / "job.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    throw Error(Fault::kNoInput, folder.string() + " is no job folder: it holds no job.json",
+                "Name the folder that packmerger prepare --out wrote.");
+  const json report = json::parse(read_file(file, kMaxReportBytes), nullptr, false);
+  if (!report.is_object() || report.value("version", json()) != 1)
+    throw Error(Fault::kBadInput, file.string() + " is not the report of a job",
+                "Prepare the model again.");
+  return report;
+}
+
+int count_trays(const json& report) {
+  int trays = 1;
+  for (const json& part : report.at("parts")) trays = std::max(trays, part.at("tray").get<int>());
+  if (trays > kMaxTrays)
+    throw Error(Fault::kBadInput, "The job has more than 10000 trays", "Prepare the model again.");
+  return trays;
+}
+
+std::optional<double> cost_of(const json& estimates, const std::string& way) {
+  const auto found = estimates.find(way);
+  if (found == estimates.end() || !found->is_object() || found->value("fits", false) == false)
+    return std::nullopt;
+  const auto cost = found->find("cost");
+  if (cost == found->end() || !cost->is_number()) return std::nullopt;
+  return cost->get<double>();
+}
+
+}  // namespace
+
+PreparedJob read_prepared(const fs::path& folder) {
+  const json report = read_report(folder);
+  try {
+    PreparedJob job;
+    const json& input = report.at("inputs").at(0);
+    job.trays = count_trays(report);
+    job.title = fs::path(input.at("file").get<std::string>()).stem().string();
+    job.input_sha256 = input.at("sha256").get<std::string>();
+    job.estimates = report.at("estimates").dump(-1, ' ', false, json::error_handler_t::replace);
+    return job;
+  } catch (const json::exception& error) {
+    throw Error(Fault::kBadInput,
+                (folder / "job.json").string() + " lacks something: " + error.what(),
+                "Prepare the model again.");
+  }
+}
+
+Profile read_prepared_profile(const fs::path& folder) {
+  return read_profile(fs::absolute(folder / "profile.toml").string());
+}
+
+bool pays(const std::string& estimates, const std::string& variant) {
+  if (variant == "cheapest") return true;
+  const json ways = json::parse(estimates, nullptr, false);
+  const std::optional<double> prepared = ways.is_object() ? cost_of(ways, variant) : std::nullopt;
+  if (!prepared) return false;
+  for (const char* way : {"as_is", "solid", "hollow", "packed"}) {
+    const std::optional<double> other = way == variant ? std::nullopt : cost_of(ways, way);
+    if (other && *other <= *prepared) return false;
+  }
+  return true;
+}
+
+fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,
+                   const std::string& extension) {
+  return folder / (stem + (tray > 1 ? "-" + std::to_string(tray) : "") + extension);
+}
+
+}  // namespace packmerger

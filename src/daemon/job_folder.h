@@ -1,0 +1,33 @@
+// What the daemon and `send` need to know of a prepared job folder (docs/JOB_FOLDER).
+#pragma once
+
+#include <string>
+
+#include "base/files.h"
+#include "model/printer.h"
+
+namespace packmerger {
+
+struct PreparedJob {
+  int trays = 1;
+  std::string title;         // the first input's name without its ending
+  std::string input_sha256;  // of the first input
+  std::string estimates;     // job.json's "estimates", JSON text
+};
+
+// Throws Error{kNoInput} when folder is no job folder, Error{kBadInput} when its job.json is not
+// what docs/JOB_FOLDER says.
+PreparedJob read_prepared(const fs::path& folder);
+
+// The profile the folder was prepared with.
+Profile read_prepared_profile(const fs::path& folder);
+
+// True when what was prepared (variant: packed, hollow, solid, or cheapest) costs less than every
+// other way that fits the printer, or when nothing else fits.
+bool pays(const std::string& estimates, const std::string& variant);
+
+// "program.gcode", "program-2.x3g", "tray-2.stl": a tray's file in the job folder.
+fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,
+                   const std::string& extension);
+
+}  // namespace packmerger

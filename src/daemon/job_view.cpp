@@ -1,0 +1,207 @@
+#include "daemon/job_view.h"
+
+#include <fmt/format.h>
+
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+using nlohmann::json;
+
+double fraction_of(const PrintReport& report) {
+  return report.total == 0 ? 0
+                           : static_cast<double>(report.done) / static_cast<double>(report.total);
+}
+
+std::string waiting_text(Waits waits) {
+  switch (waits) {
+    case Waits::kApproval:
+      return "waits for approval";
+    case Waits::kHold:
+      return "held";
+    case Waits::kNoPrinter:
+      return "its printer is not configured any more";
+    case Waits::kPaused:
+      return "waits: the printer is paused";
+    case Waits::kPrinterBusy:
+      return "waits for the printer";
+    case Waits::kClearBed:
+      return "waits for a clear bed";
+    case Waits::kNotConnected:
+      return "waits: the printer is not connected";
+    case Waits::kNothing:
+      return "waits to be sent";
+  }
+  return {};
+}
+
+std::string sending_text(const JobRecord& job, const LiveJob* live) {
+  if (live == nullptr) return "sending";
+  const std::string tray =
+      job.trays > 1 ? fmt::format("tray {} of {}, ", job.next_tray, job.trays) : "";
+  return fmt::format("{}{} {:.0f} %{}", tray, print_state_name(live->print.state),
+                     100 * fraction_of(live->print),
+                     live->print.text.empty() ? "" : ", " + live->print.text);
+}
+
+// One short phrase for people: what the job does or waits for.
+std::string status_text(const Foreman& foreman, const JobRecord& job) {
+  const LiveJob* live = foreman.live(job.id);
+  switch (job.state) {
+    case JobState::kClaiming:
+      return "being taken";
+    case JobState::kReceived:
+      return "waits to be prepared";
+    case JobState::kPreparing:
+      if (live == nullptr || live->stage.empty()) return "preparing";
+      return fmt::format("{} {:.0f} %", live->stage, 100 * live->fraction);
+    case JobState::kReady:
+    case JobState::kApproved:
+      return waiting_text(waits_for(foreman, job)) +
+             (job.reason.empty() ? "" : " (" + job.reason + ")");
+    case JobState::kSending:
+      return sending_text(job, live);
+    case JobState::kHandedOver:
+      return "handed over: open it in the printer's own software";
+    case JobState::kDone:
+      return "printed";
+    case JobState::kFailed:
+    case JobState::kCancelled:
+      return job.reason;
+  }
+  return {};
+}
+
+json progress_view(const JobRecord& job, const LiveJob* live) {
+  if (live == nullptr) return nullptr;
+  if (job.state == JobState::kPreparing)
+    return {{"stage", live->stage}, {"fraction", live->fraction}};
+  if (job.state != JobState::kSending) return nullptr;
+  return {{"stage", print_state_name(live->print.state)},
+          {"fraction", fraction_of(live->print)},
+          {"done", live->print.done},
+          {"total", live->print.total},
+          {"text", live->print.text}};
+}
+
+json estimates_view(const JobRecord& job) {
+  const json estimates = json::parse(job.estimates, nullptr, false);
+  return estimates.is_object() ? estimates : json();
+}
+
+json or_null(double value) { return value == 0 ? json() : json(value); }
+
+}  // namespace
+
+std::string_view waits_name(Waits waits) {
+  switch (waits) {
+    case Waits::kNothing:
+      return "";
+    case Waits::kApproval:
+      return "approval";
+    case Waits::kHold:
+      return "hold";
+    case Waits::kNoPrinter:
+      return "no_printer";
+    case Waits::kPaused:
+      return "paused";
+    case Waits::kPrinterBusy:
+      return "printer_busy";
+    case Waits::kClearBed:
+      return "clear_bed";
+    case Waits::kNotConnected:
+      return "not_connected";
+  }
+  return "";
+}
+
+Waits waits_for(const Foreman& foreman, const JobRecord& job) {
+  if (job.state != JobState::kReady && job.state != JobState::kApproved) return Waits::kNothing;
+  if (job.held) return Waits::kHold;
+  if (job.state == JobState::kReady) return Waits::kApproval;
+  const PrinterConfig* printer = foreman.config().printer(job.printer);
+  if (printer == nullptr) return Waits::kNoPrinter;
+  const PrinterRecord record = foreman.store().printer(job.printer);
+  if (record.paused) return Waits::kPaused;
+  if (foreman.sending_at(job.printer) != 0) return Waits::kPrinterBusy;
+  if (printer->has_bed() && !record.bed_clear) return Waits::kClearBed;
+  std::error_code ignored;
+  if (!printer->hands_over() && !std::filesystem::exists(printer->port, ignored))
+    return Waits::kNotConnected;
+  return Waits::kNothing;
+}
+
+json job_view(const Foreman& foreman, const JobRecord& job) {
+  const std::string_view waits = waits_name(waits_for(foreman, job));
+  return {{"id", job.id},
+          {"printer", job.printer},
+          {"name", job.name},
+          {"sha256", job.sha256},
+          {"state", state_name(job.state)},
+          {"held", job.held},
+          {"waits_for", waits.empty() ? json() : json(waits)},
+          {"status", status_text(foreman, job)},
+          {"progress", progress_view(job, foreman.live(job.id))},
+          {"trays", job.trays},
+          {"tray", job.next_tray},
+          {"pays", job.pays},
+          {"estimates", estimates_view(job)},
+          {"reason", job.reason},
+          {"hint", job.hint},
+          {"folder", job.trays > 0 ? job.folder : ""},
+          {"filed", job.filing_done ? job.filed : ""},
+          {"again_of", job.again_of == 0 ? json() : json(job.again_of)},
+          {"received_s", or_null(job.received_s)},
+          {"sending_s", or_null(job.sending_s)},
+          {"ended_s", or_null(job.ended_s)}};
+}
+
+json job_view_with_history(const Foreman& foreman, const JobRecord& job) {
+  json view = job_view(foreman, job);
+  view["history"] = json::array();
+  for (const JobEvent& event : foreman.store().history(job.id))
+    view["history"].push_back(
+        {{"at_s", event.at_s}, {"state", state_name(event.state)}, {"note", event.note}});
+  return view;
+}
+
+json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
+  const PrinterRecord record = foreman.store().printer(printer.name);
+  const std::int64_t sending = foreman.sending_at(printer.name);
+  std::string bed = record.bed_clear ? "clear" : "not clear";
+  if (!printer.has_bed()) bed = "none";
+  return {{"name", printer.name},
+          {"profile", printer.abilities.id},
+          {"folder", printer.folder.string()},
+          {"port", printer.port},
+          {"handoff_folder", printer.handoff_folder.string()},
+          {"approve", printer.approve == Approve::kAuto ? "auto" : "ask"},
+          {"simulated", printer.simulated},
+          {"bed", bed},
+          {"paused", record.paused},
+          {"job", sending == 0 ? json() : json(sending)}};
+}
+
+std::string result_note(const JobRecord& job) {
+  const json note = {{"job", job.id},
+                     {"printer", job.printer},
+                     {"state", state_name(job.state)},
+                     {"name", job.name},
+                     {"sha256", job.sha256},
+                     {"folder", job.folder},
+                     {"trays", job.trays},
+                     {"estimates", estimates_view(job)},
+                     {"received_s", or_null(job.received_s)},
+                     {"sending_s", or_null(job.sending_s)},
+                     {"ended_s", or_null(job.ended_s)}};
+  return note.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string reason_note(const JobRecord& job) {
+  return fmt::format("{}: {}\n{}{}job {} on {}\n", printable(job.name),
+                     job.reason.empty() ? std::string(state_name(job.state)) : job.reason, job.hint,
+                     job.hint.empty() ? "" : "\n", job.id, job.printer);
+}
+
+}  // namespace packmerger

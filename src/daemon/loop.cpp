@@ -1,0 +1,255 @@
+#include "daemon/loop.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <thread>
+
+#include "base/files.h"
+#include "daemon/api.h"
+#include "daemon/foreman.h"
+#include "daemon/move_file.h"
+#include "daemon/socket_server.h"
+#include "daemon/watch_folder.h"
+#include "daemon/worker.h"
+
+namespace packmerger {
+namespace {
+
+using Log = std::function<void(const std::string&)>;
+
+constexpr double kTick_s = 1;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Held while the process lives; the kernel lets go of it however the process ends.
+class StateLock {
+ public:
+  explicit StateLock(const fs::path& state) {
+    const fs::path file = state / "lock";
+    fd_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (fd_ < 0)
+      throw Error(Fault::kCannotWrite, "Cannot write " + file.string(),
+                  "Give the daemon's user the right to write to its state folder.");
+    if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+    ::close(fd_);
+    throw Error(Fault::kBusy, "Another packmergerd works in " + state.string(),
+                "End it first, or give this one another state folder.");
+  }
+  StateLock(const StateLock&) = delete;
+  StateLock& operator=(const StateLock&) = delete;
+  ~StateLock() { ::close(fd_); }
+
+ private:
+  int fd_ = -1;
+};
+
+// SIGTERM, SIGINT and SIGHUP as something to poll for. Threads started later inherit the mask.
+class Signals {
+ public:
+  Signals() {
+    ::sigemptyset(&set_);
+    for (const int number : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set_, number);
+    ::pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    fd_ = ::signalfd(-1, &set_, SFD_CLOEXEC | SFD_NONBLOCK);
+  }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+  ~Signals() { ::close(fd_); }
+
+  int fd() const { return fd_; }
+  bool came() {
+    signalfd_siginfo signal;
+    return ::read(fd_, &signal, sizeof signal) == sizeof signal;
+  }
+  // From now on a signal ends the process.
+  void let_through() { ::pthread_sigmask(SIG_UNBLOCK, &set_, nullptr); }
+
+ private:
+  sigset_t set_;
+  int fd_ = -1;
+};
+
+// Starts the crew's threads; ends their orders and waits for them.
+class Threads {
+ public:
+  Threads(const DaemonConfig& config, Crew& crew, Queue<Event>& events) : crew_(crew) {
+    threads_.emplace_back([&] { run_worker(crew.worker, events, config.prepare); });
+    threads_.emplace_back([&] { run_clerk(crew.clerk, events); });
+    for (const PrinterConfig& printer : config.printers)
+      threads_.emplace_back([&crew, &events, &printer] {
+        run_sender(crew.senders.at(printer.name), events, printer);
+      });
+  }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+  ~Threads() { finish(); }
+
+  void finish() {
+    crew_.worker.close();
+    crew_.clerk.close();
+    for (auto& [name, orders] : crew_.senders) orders.close();
+    for (std::thread& thread : threads_)
+      if (thread.joinable()) thread.join();
+  }
+
+ private:
+  Crew& crew_;
+  std::vector<std::thread> threads_;
+};
+
+// A printer's folder. One that cannot be watched (a share that is not mounted) is tried again.
+struct Watch {
+  const PrinterConfig* printer = nullptr;
+  std::unique_ptr<WatchFolder> folder;
+  double retry_s = 0;
+  std::string told;  // the last trouble, told once
+};
+
+class Loop {
+ public:
+  Loop(const DaemonConfig& config, Foreman& foreman, Queue<Event>& events, SocketServer& server,
+       const Log& log)
+      : config_(config), foreman_(foreman), events_(events), server_(server), log_(log) {
+    for (const PrinterConfig& printer : config.printers) watches_.push_back({&printer, {}, 0, {}});
+  }
+
+  void run(Signals& signals) {
+    do {
+      const double now = now_s();
+      try {
+        take_events();
+        look_into_folders(now);
+        foreman_.advance(now);
+        told_.clear();
+      } catch (const Error& error) {
+        tell(told_, error.what() + (". " + error.hint()));
+      }
+      server_.serve(now_s());
+      wait(signals);
+    } while (!signals.came());
+  }
+
+  // An event that could not be recorded stays the first.
+  void take_events() {
+    while (std::optional<Event> event = events_.try_pop()) unhandled_.push_back(std::move(*event));
+    while (!unhandled_.empty()) {
+      foreman_.handle(unhandled_.front());
+      unhandled_.pop_front();
+    }
+  }
+
+ private:
+  void tell(std::string& told, const std::string& text) {
+    if (told != text) log_(text);
+    told = text;
+  }
+
+  void look_into_folders(double now) {
+    for (Watch& watch : watches_) {
+      if (watch.retry_s > now) continue;
+      const WatchFolder::Found found = look(watch, now);
+      for (const WatchFolder::Ignored& ignored : found.ignored) tell_ignored(ignored);
+      for (const fs::path& file : found.whole)
+        if (!foreman_.arrived(*watch.printer, file))
+          watch.folder->refuse(file, now + config_.retry_s);
+    }
+  }
+
+  WatchFolder::Found look(Watch& watch, double now) {
+    try {
+      if (!watch.folder)
+        watch.folder = std::make_unique<WatchFolder>(watch.printer->folder, config_.watch);
+      WatchFolder::Found found = watch.folder->look(now);
+      watch.told.clear();
+      return found;
+    } catch (const Error& error) {
+      tell(watch.told, error.what() + (". " + error.hint()));
+      watch.retry_s = now + config_.retry_s;
+      return {};
+    }
+  }
+
+  void tell_ignored(const WatchFolder::Ignored& ignored) {
+    const std::string text =
+        printable(ignored.path.filename().string()) + ": not taken, " + ignored.reason;
+    log_(printable(ignored.path.string()) + ": not taken, " + ignored.reason);
+    const fs::path failed = ignored.path.parent_path() / "failed";
+    try {
+      fs::create_directories(failed);
+      write_file_whole(note_beside(failed / ignored.path.filename(), ".reason.txt"), text + "\n");
+    } catch (const std::exception& error) {
+      log_(error.what());
+    }
+  }
+
+  void wait(const Signals& signals) {
+    std::vector<pollfd> waiting = {{signals.fd(), POLLIN, 0}, {events_.fd(), POLLIN, 0}};
+    double until = now_s() + kTick_s;
+    for (const Watch& watch : watches_) {
+      if (!watch.folder) continue;
+      if (watch.retry_s <= now_s()) waiting.push_back({watch.folder->fd(), POLLIN, 0});
+      until = std::min(until, std::max(watch.folder->next_look_s(), watch.retry_s));
+    }
+    server_.add_to(waiting);
+    if (!unhandled_.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    const int timeout_ms = std::max(0, static_cast<int>(1000 * (until - now_s()))) + 1;
+    ::poll(waiting.data(), waiting.size(), timeout_ms);
+  }
+
+  const DaemonConfig& config_;
+  Foreman& foreman_;
+  Queue<Event>& events_;
+  SocketServer& server_;
+  const Log& log_;
+  std::vector<Watch> watches_;
+  std::deque<Event> unhandled_;
+  std::string told_;  // what went wrong in the last round, told once
+};
+
+void make_state_folder(const fs::path& state) {
+  std::error_code failed;
+  fs::create_directories(state / "jobs", failed);
+  if (failed)
+    throw Error(Fault::kCannotWrite,
+                "Cannot make the state folder " + state.string() + ": " + failed.message(),
+                "Name another one in the settings (state), or make it writable.");
+}
+
+}  // namespace
+
+void run_daemon(const DaemonConfig& config, const Log& log) {
+  make_state_folder(config.state);
+  const StateLock lock(config.state);
+  Signals signals;
+  JobStore store(config.state / "jobs.sqlite");
+  Queue<Event> events;
+  Crew crew(config);
+  Foreman foreman(config, store, crew, log);
+  foreman.recover();
+  Threads threads(config, crew, events);
+  {
+    SocketServer server(config.socket, config.socket_mode,
+                        [&](std::string_view request) { return answer(foreman, request); });
+    Loop loop(config, foreman, events, server, log);
+    log("listening at " + config.socket.string());
+    loop.run(signals);
+    log("ending");
+    signals.let_through();
+    foreman.stop();
+    threads.finish();
+    loop.take_events();
+  }
+  log("ended");
+}
+
+}  // namespace packmerger

@@ -1,0 +1,18 @@
+// The daemon's loop: the one thread that owns jobs, database, watched folders and the socket.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "daemon/config.h"
+
+namespace packmerger {
+
+// Runs until SIGTERM, SIGINT or SIGHUP. Then nothing new is started, children are ended, a running
+// print is cancelled in the printer's own way (heaters off) and recorded as failed; a second
+// signal ends the process at once. Call it on the main thread, before any other is started.
+// Throws Error{kBusy} when another daemon works in the state folder, and whatever keeps it from
+// starting. log takes one line without its end, from the calling thread only.
+void run_daemon(const DaemonConfig& config, const std::function<void(const std::string&)>& log);
+
+}  // namespace packmerger

@@ -1,0 +1,103 @@
+// What the daemon's threads tell each other, as values through base/queue.h. The loop's thread
+// alone owns jobs and the database; the others get orders and answer with events.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "base/queue.h"
+#include "firmware_io/print_state.h"
+
+namespace packmerger {
+
+struct Failure {
+  Fault fault = Fault::kInternal;
+  std::string what;
+  std::string hint;
+};
+
+// To the worker, which prepares one job after the other.
+struct PrepareOrder {
+  std::int64_t job = 0;
+  std::filesystem::path input;
+  std::filesystem::path out;      // the job folder to be made
+  std::vector<std::string> argv;  // of the child process
+  std::string variant;            // what is prepared, for the question whether it pays
+  std::shared_ptr<std::atomic<bool>> cancel;
+};
+
+// To the clerk, which moves files without keeping the loop waiting.
+struct FetchOrder {  // copies a file that cannot be renamed to where it belongs
+  std::int64_t job = 0;
+  std::filesystem::path from;
+  std::filesystem::path to;
+  bool keep = false;  // otherwise the original is removed
+};
+struct FileOrder {  // puts a job's file into done/ or failed/, with a note beside it
+  std::int64_t job = 0;
+  std::filesystem::path from;
+  std::filesystem::path to;
+  std::filesystem::path note;
+  std::string note_text;
+};
+using ClerkOrder = std::variant<FetchOrder, FileOrder>;
+
+// To a printer's sender.
+struct SendOrder {
+  std::int64_t job = 0;
+  std::filesystem::path folder;  // the prepared job folder
+  int tray = 1;
+  std::string handoff_name;  // of the folder that is handed over
+  std::shared_ptr<PrintControl> control;
+};
+
+// To the loop.
+struct PrepareProgress {
+  std::int64_t job = 0;
+  std::string stage;
+  double fraction = 0;  // of the stage
+};
+struct Hashed {
+  std::int64_t job = 0;
+  std::string sha256;
+};
+struct Prepared {
+  std::int64_t job = 0;
+  int trays = 0;
+  std::string estimates;  // JSON text
+  bool pays = false;
+};
+struct PrepareFailed {
+  std::int64_t job = 0;
+  Failure failure;
+};
+struct Fetched {
+  std::int64_t job = 0;
+  std::optional<Failure> failure;
+};
+struct Filed {
+  std::int64_t job = 0;
+  std::optional<Failure> failure;
+};
+struct SendProgress {
+  std::int64_t job = 0;
+  PrintReport report;
+};
+enum class SendOutcome { kDone, kCancelled, kFailed, kNotStarted };  // kNotStarted: try again
+struct SendEnded {
+  std::int64_t job = 0;
+  SendOutcome outcome = SendOutcome::kDone;
+  Failure failure;   // unless done
+  std::string note;  // for the history: where it was handed over to
+};
+using Event = std::variant<PrepareProgress, Hashed, Prepared, PrepareFailed, Fetched, Filed,
+                           SendProgress, SendEnded>;
+
+}  // namespace packmerger

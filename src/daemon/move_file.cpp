@@ -1,0 +1,161 @@
+#include "daemon/move_file.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "base/error.h"
+
+namespace packmerger {
+namespace {
+
+constexpr std::size_t kMaxName = 255;  // bytes of a file's name on Linux
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+[[noreturn]] void cannot_move(const fs::path& from, const fs::path& to, int why) {
+  const std::string what = printable(from.string()) + " cannot be moved to " +
+                           printable(to.string()) + ": " + std::strerror(why);
+  if (why == EEXIST) throw Error(Fault::kBusy, what, "Rename one of the two files.");
+  if (why == ENOENT) throw Error(Fault::kNoInput, what, "Drop the file again.");
+  throw Error(Fault::kCannotWrite, what,
+              "Give the daemon's user the right to write to both folders, and free space.");
+}
+
+// Some network file systems know no renameat2 flags; there a hard link, or where even those are
+// missing a look before the rename, keeps an existing file.
+int rename_keeping(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0 ? 0 : errno;
+  if (errno == EEXIST || errno == EXDEV || errno == ENOENT) return errno;
+  struct stat there {};
+  if (::lstat(to.c_str(), &there) == 0) return EEXIST;
+  return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+}
+
+void make_folders(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    throw Error(Fault::kCannotWrite,
+                "Cannot make " + printable(folder.string()) + ": " + failed.message(),
+                "Give the daemon's user the right to write there.");
+}
+
+void copy_bytes(const fs::path& from, int in, const fs::path& to, int out) {
+  std::vector<char> block(1 << 20);
+  for (;;) {
+    const ssize_t count = ::read(in, block.data(), block.size());
+    if (count == 0) return;
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0)
+      throw Error(Fault::kIo,
+                  "Cannot read " + printable(from.string()) + ": " + std::strerror(errno),
+                  "Check the disk or the network share it is on.");
+    for (ssize_t done = 0; done < count;) {
+      const ssize_t written =
+          ::write(out, block.data() + done, static_cast<std::size_t>(count - done));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) cannot_move(from, to, errno);
+      done += written;
+    }
+  }
+}
+
+// At most `bytes` bytes, cut between two UTF-8 characters.
+std::string cut(std::string text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
+  text.resize(bytes);
+  return text;
+}
+
+bool is_there(const fs::path& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0;
+}
+
+}  // namespace
+
+Moved rename_new(const fs::path& from, const fs::path& to) {
+  make_folders(to.parent_path());
+  const int why = rename_keeping(from, to);
+  if (why == EXDEV) return Moved::kOtherFileSystem;
+  if (why != 0) cannot_move(from, to, why);
+  sync_folder(to.parent_path());
+  sync_folder(from.parent_path());
+  return Moved::kYes;
+}
+
+void copy_file_whole(const fs::path& from, const fs::path& to) {
+  make_folders(to.parent_path());
+  const Descriptor in(::open(from.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (in.get() < 0) cannot_move(from, to, errno);
+  std::string name = (to.parent_path() / ".copy.XXXXXX").string();
+  const Descriptor out(::mkostemp(name.data(), O_CLOEXEC));
+  if (out.get() < 0) cannot_move(from, to, errno);
+  try {
+    copy_bytes(from, in.get(), to, out.get());
+    if (::fchmod(out.get(), 0644) != 0 || ::fsync(out.get()) != 0) cannot_move(from, to, errno);
+    const int why = rename_keeping(name, to);
+    if (why != 0) cannot_move(from, to, why);
+  } catch (...) {
+    ::unlink(name.c_str());
+    throw;
+  }
+  sync_folder(to.parent_path());
+}
+
+void move_new(const fs::path& from, const fs::path& to) {
+  if (rename_new(from, to) == Moved::kYes) return;
+  copy_file_whole(from, to);
+  if (::unlink(from.c_str()) != 0) cannot_move(from, to, errno);
+}
+
+fs::path free_path(const fs::path& folder, const std::string& name) {
+  const fs::path plain(name);
+  const std::string extension = cut(plain.extension().string(), 32);
+  for (int number = 1;; ++number) {
+    const std::string tail =
+        (number == 1 ? std::string() : " (" + std::to_string(number) + ")") + extension;
+    const fs::path path = folder / (cut(plain.stem().string(), kMaxName - tail.size()) + tail);
+    if (!is_there(path) && !is_there(note_beside(path, ".reason.txt")) &&
+        !is_there(note_beside(path, ".result.json")))
+      return path;
+  }
+}
+
+fs::path note_beside(const fs::path& file, std::string_view suffix) {
+  return file.parent_path() /
+         (cut(file.filename().string(), kMaxName - suffix.size()) + std::string(suffix));
+}
+
+std::string printable(std::string_view text) {
+  std::string result(text);
+  std::replace_if(
+      result.begin(), result.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
+  return result;
+}
+
+}  // namespace packmerger

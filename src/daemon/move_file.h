@@ -1,0 +1,35 @@
+// Moving a user's files about without ever losing or replacing one.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/files.h"
+
+namespace packmerger {
+
+enum class Moved { kYes, kOtherFileSystem };
+
+// Renames from to to, which must not exist, and syncs both folders; folders on the way to `to` are
+// made. kOtherFileSystem: nothing was done, copy_file_whole can do it. Throws Error{kNoInput} when
+// from is not there, Error{kBusy} when to exists, Error{kCannotWrite} otherwise.
+Moved rename_new(const fs::path& from, const fs::path& to);
+
+// Copies through a temporary sibling: afterwards `to`, which must not exist, is whole and synced,
+// or absent. Throws as rename_new, and Error{kIo} when from cannot be read.
+void copy_file_whole(const fs::path& from, const fs::path& to);
+
+// rename_new, or where that is not possible copy_file_whole and then removing from.
+void move_new(const fs::path& from, const fs::path& to);
+
+// `folder/name`, or `folder/stem (2).ext` and so on: the first where neither that file nor the
+// notes of notes_beside() are there.
+fs::path free_path(const fs::path& folder, const std::string& name);
+
+// NAME.reason.txt and NAME.result.json: the note beside a file, its name cut to 255 bytes.
+fs::path note_beside(const fs::path& file, std::string_view suffix);
+
+// For messages: control characters become "?".
+std::string printable(std::string_view text);
+
+}  // namespace packmerger

@@ -1,0 +1,84 @@
+#include "daemon/send.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "daemon/find_port.h"
+#include "daemon/job_folder.h"
+#include "daemon/move_file.h"
+#include "firmware_io/gcode_link.h"
+#include "firmware_io/port.h"
+#include "firmware_io/s3g_link.h"
+
+namespace packmerger {
+namespace {
+
+constexpr std::uint64_t kMaxProgramBytes = std::uint64_t{1} << 30;
+
+StreamOptions stream_options(const Profile& profile, const PreparedJob& job, int tray) {
+  StreamOptions options;
+  options.timeout_s = profile.link.timeout_s;
+  options.boot_wait_s = profile.link.boot_wait_s;
+  options.build_name =
+      job.trays > 1 ? fmt::format("{} {}/{}", job.title, tray, job.trays) : job.title;
+  options.safe_gcode = profile.link.safe_gcode;
+  return options;
+}
+
+std::string document_extension(HandoffDocument document) {
+  return document == HandoffDocument::kTrayStl ? ".stl" : ".3mf";
+}
+
+bool holds_same_report(const fs::path& folder, const fs::path& job_folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / "job.json", ignored) &&
+         sha256_hex_of_file(folder / "job.json") == sha256_hex_of_file(job_folder / "job.json");
+}
+
+}  // namespace
+
+void send_tray(const fs::path& job_folder, int tray, const std::string& port,
+               const PrintListener& listener, PrintControl& control) {
+  const PreparedJob job = read_prepared(job_folder);
+  const Profile profile = read_prepared_profile(job_folder);
+  if (profile.dialect == Dialect::kHandoff)
+    throw Error(Fault::kUsage, "The " + profile.name + " takes no job over a cable",
+                "Hand it over in a folder: packmerger send DIR --to FOLDER.");
+  if (tray < 1 || tray > job.trays)
+    throw Error(Fault::kNoInput, fmt::format("The job has no tray {}", tray),
+                fmt::format("It has {}; name one of them with --tray.", job.trays));
+  const bool is_gcode = profile.dialect == Dialect::kGcode;
+  const std::string program = read_file(
+      tray_path(job_folder, "program", tray, is_gcode ? ".gcode" : ".x3g"), kMaxProgramBytes);
+  is_gcode ? check_gcode(program) : check_x3g(program);
+  check_port(port, profile.link.usb_ids);
+  const std::unique_ptr<Port> channel = open_port(port, profile.link.baud);
+  const StreamOptions options = stream_options(profile, job, tray);
+  const auto print = is_gcode ? print_gcode : print_x3g;
+  print(*channel, program, options, listener, control);
+}
+
+fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name) {
+  const PreparedJob job = read_prepared(job_folder);
+  const Profile profile = read_prepared_profile(job_folder);
+  if (profile.dialect != Dialect::kHandoff)
+    throw Error(Fault::kUsage, "The " + profile.name + " is sent its jobs over a cable",
+                "Leave --to away, and name its port with --port.");
+  const fs::path target = to / name;
+  if (holds_same_report(target, job_folder)) return target;
+  std::error_code ignored;
+  if (!fs::is_directory(to, ignored))
+    throw Error(Fault::kCannotWrite, to.string() + " is no folder that can be written to",
+                "Make the folder, or connect the share it lies on.");
+  TemporaryFolder folder = TemporaryFolder::beside(target);
+  const std::string extension = document_extension(profile.document);
+  for (int tray = 1; tray <= job.trays; ++tray)
+    copy_file_whole(tray_path(job_folder, "tray", tray, extension),
+                    tray_path(folder.path(), "tray", tray, extension));
+  for (const char* file : {"job.json", "preview.png"})
+    copy_file_whole(job_folder / file, folder.path() / file);
+  folder.publish(target);
+  return target;
+}
+
+}  // namespace packmerger

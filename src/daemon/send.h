@@ -1,0 +1,32 @@
+// Giving a prepared job to its printer: streaming a tray's program, or handing its document over
+// in a folder where the printer takes no job by wire.
+#pragma once
+
+#include <string>
+
+#include "base/files.h"
+#include "firmware_io/print_state.h"
+
+namespace packmerger {
+
+// Streams the program of one tray (from 1) to the printer at `port` and returns when the printer
+// has executed all of it. Reads job.json and profile.toml of the folder; the profile's dialect,
+// baud rate and limits apply. Throws
+//   Error{kNoInput}      no job folder, or no such tray;
+//   Error{kBadInput}     the program cannot be sent;
+//   Error{kUsage}        the printer of this profile takes no job by wire;
+//   Error{kUnavailable}  no such port, nobody answers, or another printer is there;
+//   Error{kBusy}         the port or the printer is in use;
+//   Error{kIo}           the print failed; Error{kInterrupted} cancelled and stopped.
+// kUnavailable and kBusy are thrown before anything was printed.
+void send_tray(const fs::path& job_folder, int tray, const std::string& port,
+               const PrintListener& listener, PrintControl& control);
+
+// Puts the profile's document of every tray, job.json and preview.png into `to/name`: through a
+// temporary name, fsync and rename, so that the folder is whole or absent. Returns its path.
+// Where a folder of that name already holds this very job, nothing is done. Throws Error{kNoInput}
+// when job_folder is no job folder, Error{kUsage} when its printer is sent its jobs,
+// Error{kCannotWrite} when `to` cannot be written to or the name is taken by something else.
+fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name);
+
+}  // namespace packmerger

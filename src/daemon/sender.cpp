@@ -1,0 +1,48 @@
+#include "daemon/send.h"
+#include "daemon/worker.h"
+
+namespace packmerger {
+namespace {
+
+SendOutcome outcome_of(const Error& error, bool printed, const PrintControl& control) {
+  if (error.fault() == Fault::kInterrupted || control.cancelled()) return SendOutcome::kCancelled;
+  const bool later = error.fault() == Fault::kUnavailable || error.fault() == Fault::kBusy ||
+                     error.fault() == Fault::kCannotWrite;
+  return later && !printed ? SendOutcome::kNotStarted : SendOutcome::kFailed;
+}
+
+SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig& printer) {
+  bool printed = false;
+  const auto listener = [&](const PrintReport& report) {
+    printed = printed || report.done > 0;
+    events.push(SendProgress{order.job, report});
+  };
+  try {
+    if (order.control->cancelled()) throw Error(Fault::kInterrupted, "Cancelled", "");
+    if (printer.hands_over()) {
+      const fs::path target = hand_over(order.folder, printer.handoff_folder, order.handoff_name);
+      return {order.job, SendOutcome::kDone, {}, "handed over in " + target.string()};
+    }
+    send_tray(order.folder, order.tray, printer.port, listener, *order.control);
+    return {order.job, SendOutcome::kDone, {}, ""};
+  } catch (const Error& error) {
+    return {order.job,
+            outcome_of(error, printed, *order.control),
+            {error.fault(), error.what(), error.hint()},
+            ""};
+  } catch (const std::exception& error) {
+    return {order.job,
+            SendOutcome::kFailed,
+            {Fault::kInternal, error.what(), "Look into the daemon's messages."},
+            ""};
+  }
+}
+
+}  // namespace
+
+void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer) {
+  while (const std::optional<SendOrder> order = orders.pop())
+    events.push(send(*order, events, printer));
+}
+
+}  // namespace packmerger

@@ -1,0 +1,179 @@
+#include "daemon/watch_folder.h"
+
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <set>
+#include <tuple>
+
+#include "base/error.h"
+#include "daemon/move_file.h"
+#include "daemon/whole_file.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kPendingLook_s = 0.25;  // while a file waits to become whole
+
+// IN_CREATE: a hard link is complete without ever being closed or moved.
+constexpr std::uint32_t kEvents = IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_ONLYDIR;
+
+[[noreturn]] void cannot_read(const fs::path& folder, int why) {
+  throw Error(Fault::kIo, "Cannot watch " + printable(folder.string()) + ": " + std::strerror(why),
+              "Give the daemon's user the right to read it; it is tried again.");
+}
+
+std::uint64_t inode_of(const fs::path& folder) {
+  struct stat status {};
+  return ::stat(folder.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+std::string reason_to_ignore(const struct stat& status) {
+  if (S_ISLNK(status.st_mode))
+    return "it is a symbolic link; the daemon takes only files themselves. Copy the file here.";
+  if (S_ISDIR(status.st_mode))
+    return "it is a folder; the daemon takes only files. Put the files themselves here.";
+  if (!S_ISREG(status.st_mode)) return "it is no regular file.";
+  return {};
+}
+
+}  // namespace
+
+bool is_temporary_name(std::string_view name) {
+  if (name.empty() || name.front() == '.' || name.front() == '~') return true;
+  static constexpr std::array<std::string_view, 4> kEndings = {".part", ".tmp", ".crdownload",
+                                                               ".filepart"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](std::string_view ending) { return name.ends_with(ending); });
+}
+
+WatchFolder::WatchFolder(fs::path folder, const WatchConfig& rules)
+    : folder_(std::move(folder)),
+      rules_(rules),
+      inotify_(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+  if (inotify_ < 0) cannot_read(folder_, errno);
+  try {
+    set_watch();
+  } catch (...) {
+    ::close(inotify_);
+    throw;
+  }
+}
+
+WatchFolder::~WatchFolder() { ::close(inotify_); }
+
+// The folder may have been removed and made again: then the watch is on the wrong one.
+void WatchFolder::set_watch() {
+  std::error_code failed;
+  fs::create_directories(folder_, failed);
+  if (failed)
+    throw Error(Fault::kCannotWrite,
+                "Cannot make " + printable(folder_.string()) + ": " + failed.message(),
+                "Give the daemon's user the right to write there, or name another folder.");
+  if (watch_ >= 0 && inode_of(folder_) == watched_inode_) return;
+  if (watch_ >= 0) ::inotify_rm_watch(inotify_, watch_);
+  watch_ = ::inotify_add_watch(inotify_, folder_.c_str(), kEvents);
+  if (watch_ < 0) cannot_read(folder_, errno);
+  watched_inode_ = inode_of(folder_);
+}
+
+// True when the folder has to be read.
+bool WatchFolder::read_events() {
+  alignas(inotify_event) std::array<char, 16384> block;
+  bool happened = false;
+  for (;;) {
+    const ssize_t count = ::read(inotify_, block.data(), block.size());
+    if (count <= 0) return happened;
+    happened = true;
+    for (ssize_t at = 0; at < count;) {
+      inotify_event event;
+      std::memcpy(&event, block.data() + at, sizeof event);
+      const char* name = block.data() + at + sizeof event;
+      if (event.len > 0 && (event.mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) != 0 &&
+          !is_temporary_name(name))
+        seen_[name].closed = true;
+      at += static_cast<ssize_t>(sizeof event + event.len);
+    }
+  }
+}
+
+WatchFolder::Found WatchFolder::look(double now_s) {
+  Found found;
+  const bool happened = read_events();
+  if (!happened && now_s < next_look_s_) return found;
+  next_look_s_ = now_s + rules_.rescan_s;  // also where an error is thrown below
+  set_watch();
+  read_folder(now_s, found);
+  return found;
+}
+
+void WatchFolder::read_folder(double now_s, Found& found) {
+  std::error_code failed;
+  fs::directory_iterator entries(folder_, failed);
+  if (failed) cannot_read(folder_, failed.value());
+  std::set<std::string> present;
+  std::vector<std::tuple<std::int64_t, std::string>> ripe;  // when it was last changed, name
+  for (; entries != fs::directory_iterator(); entries.increment(failed)) {
+    const std::string name = entries->path().filename().string();
+    if (is_temporary_name(name) || name == "done" || name == "failed") continue;
+    present.insert(name);
+    Seen& seen = seen_[name];
+    if (!note_file(entries->path(), seen, now_s, found) || seen.refused_until_s > now_s) continue;
+    next_look_s_ = std::min(next_look_s_, now_s + kPendingLook_s);
+    if (is_ripe(entries->path(), seen, now_s)) ripe.emplace_back(seen.modified_ns, name);
+  }
+  if (failed) cannot_read(folder_, failed.value());
+  std::erase_if(seen_, [&](const auto& item) { return !present.contains(item.first); });
+  std::sort(ripe.begin(), ripe.end());
+  for (const auto& [modified_ns, name] : ripe) found.whole.push_back(folder_ / name);
+}
+
+// False for what is not a file that may be taken.
+bool WatchFolder::note_file(const fs::path& path, Seen& seen, double now_s, Found& found) const {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0) return false;
+  if (const std::string reason = reason_to_ignore(status); !reason.empty()) {
+    if (!seen.told) found.ignored.push_back({path, reason});
+    seen.told = true;
+    return false;
+  }
+  const std::int64_t modified_ns =
+      std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec;
+  if (seen.inode != status.st_ino || seen.size != status.st_size ||
+      seen.modified_ns != modified_ns) {
+    seen.inode = status.st_ino;
+    seen.size = status.st_size;
+    seen.modified_ns = modified_ns;
+    seen.still_since_s = now_s;
+    seen.refused_until_s = 0;
+  }
+  return true;
+}
+
+bool WatchFolder::is_ripe(const fs::path& path, const Seen& seen, double now_s) const {
+  const double still_s = now_s - seen.still_since_s;
+  if (still_s < rules_.still_s) return false;
+  if (still_s >= std::max(rules_.give_up_s, rules_.still_s)) return true;
+  if (is_being_written(path)) return false;
+  switch (file_is_whole(path)) {
+    case Whole::kYes:
+      return true;
+    case Whole::kNo:
+      return false;
+    case Whole::kUnknown:
+      return seen.closed || still_s >= 3 * rules_.still_s;
+  }
+  return false;
+}
+
+void WatchFolder::refuse(const fs::path& path, double until_s) {
+  const auto found = seen_.find(path.filename().string());
+  if (found != seen_.end()) found->second.refused_until_s = until_s;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,78 @@
+// One printer's watched folder: finds the files that people put into it, and says when each is
+// whole. It only looks; whoever owns the jobs takes the files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/config.h"
+
+namespace packmerger {
+
+// .*, ~*, *.part, *.tmp, *.crdownload, *.filepart: names of files that are not there yet.
+bool is_temporary_name(std::string_view name);
+
+class WatchFolder {
+ public:
+  // Makes the folder where it is missing. The watch (inotify) is set before the folder is first
+  // read, so that nothing falls between. Throws Error{kCannotWrite} when it cannot be made,
+  // Error{kIo} when it cannot be read.
+  WatchFolder(std::filesystem::path folder, const WatchConfig& rules);
+  WatchFolder(const WatchFolder&) = delete;
+  WatchFolder& operator=(const WatchFolder&) = delete;
+  ~WatchFolder();
+
+  const std::filesystem::path& folder() const { return folder_; }
+  int fd() const { return inotify_; }  // readable when something happened
+
+  struct Ignored {
+    std::filesystem::path path;
+    std::string reason;
+  };
+  struct Found {
+    std::vector<std::filesystem::path> whole;  // ready to be taken, oldest first
+    std::vector<Ignored> ignored;              // told once each: symbolic links, devices, folders
+  };
+
+  // Reads what happened and, when it is time, the folder. now_s: a clock that never goes back.
+  // A file stays in `whole` of every call until it is gone, or refused.
+  // Throws Error{kIo} while the folder cannot be read.
+  Found look(double now_s);
+
+  // The file could not be taken: it is offered again after retry_s, or once it changed.
+  void refuse(const std::filesystem::path& path, double until_s);
+
+  // When look() has to be called although fd() stays silent.
+  double next_look_s() const { return next_look_s_; }
+
+ private:
+  struct Seen {
+    std::uint64_t inode = 0;
+    std::int64_t size = -1;
+    std::int64_t modified_ns = 0;
+    double still_since_s = 0;
+    double refused_until_s = 0;
+    bool closed = false;  // its writer closed it, or it was moved here
+    bool told = false;    // that it is ignored
+  };
+
+  void set_watch();
+  bool read_events();
+  void read_folder(double now_s, Found& found);
+  bool note_file(const std::filesystem::path& path, Seen& seen, double now_s, Found& found) const;
+  bool is_ripe(const std::filesystem::path& path, const Seen& seen, double now_s) const;
+
+  std::filesystem::path folder_;
+  WatchConfig rules_;
+  int inotify_ = -1;
+  int watch_ = -1;
+  std::uint64_t watched_inode_ = 0;
+  std::map<std::string, Seen> seen_;  // by name
+  double next_look_s_ = 0;
+};
+
+}  // namespace packmerger

@@ -1,0 +1,127 @@
+#include "daemon/worker.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <charconv>
+#include <chrono>
+
+#include "base/process.h"
+#include "daemon/job_folder.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kReportEvery{100};
+constexpr std::size_t kMaxReason = 2000;  // bytes of a child's message that are kept
+
+// Where a child that was killed leaves what it was writing.
+void remove_leftovers(const fs::path& out, const fs::path& temporary) {
+  std::error_code ignored;
+  fs::remove_all(temporary, ignored);
+  const std::string prefix = "." + out.filename().string() + ".";
+  std::vector<fs::path> left;
+  for (const fs::directory_entry& entry : fs::directory_iterator(out.parent_path(), ignored))
+    if (entry.path().filename().string().starts_with(prefix)) left.push_back(entry.path());
+  for (const fs::path& path : left) fs::remove_all(path, ignored);
+}
+
+ProcessResult run_child(const PrepareOrder& order, const PrepareConfig& config,
+                        const fs::path& temporary, Queue<Event>& events) {
+  ProcessSpec spec;
+  spec.argv = order.argv;
+  spec.set_env = {{"TMPDIR", temporary.string()}};
+  spec.folder = temporary;
+  spec.nice = config.nice;
+  spec.max_memory_bytes = config.memory_bytes;
+  Clock::time_point told = Clock::now() - kReportEvery;
+  const auto on_line = [&](std::string_view text) {
+    const std::optional<ProgressLine> line = progress_line(text);
+    if (!line || Clock::now() - told < kReportEvery) return;
+    told = Clock::now();
+    events.push(PrepareProgress{order.job, line->stage, line->fraction});
+  };
+  return run_process(spec, config.time_s, Progress({}, order.cancel.get()), on_line);
+}
+
+void check_result(const ProcessResult& result, const PrepareConfig& config) {
+  if (result.timed_out)
+    throw Error(Fault::kBadInput,
+                fmt::format("Preparing took longer than {:g} s and was ended", config.time_s),
+                "Simplify the model, or raise time_s below [prepare] in the daemon's settings.");
+  if (result.status.ok()) return;
+  const Failure failure = child_failure(result.status.code, result.status.signal, result.err);
+  throw Error(failure.fault, failure.what, failure.hint);
+}
+
+Prepared prepare(const PrepareOrder& order, Queue<Event>& events, const PrepareConfig& config) {
+  const std::string sha256 = sha256_hex_of_file(order.input);
+  events.push(Hashed{order.job, sha256});
+  const fs::path temporary = order.out.parent_path() / "tmp";
+  remove_leftovers(order.out, temporary);
+  fs::create_directories(temporary);
+  check_result(run_child(order, config, temporary, events), config);
+  const PreparedJob job = read_prepared(order.out);
+  if (job.input_sha256 != sha256)
+    throw Error(Fault::kBusy, "The model was changed while it was being read",
+                "Drop it again once the program that writes it has finished.");
+  return {order.job, job.trays, job.estimates, pays(job.estimates, order.variant)};
+}
+
+}  // namespace
+
+std::optional<ProgressLine> progress_line(std::string_view line) {
+  const std::size_t close = line.find("%] ");
+  if (line.empty() || line.front() != '[' || close == std::string_view::npos) return std::nullopt;
+  std::string_view digits = line.substr(1, close - 1);
+  digits.remove_prefix(std::min(digits.find_first_not_of(' '), digits.size()));
+  int percent = 0;
+  const auto [end, failed] = std::from_chars(digits.begin(), digits.end(), percent);
+  if (failed != std::errc() || end != digits.end() || percent < 0 || percent > 100)
+    return std::nullopt;
+  return ProgressLine{std::string(line.substr(close + 3, 200)), percent / 100.0};
+}
+
+Failure child_failure(int exit_code, int signal, std::string_view standard_error) {
+  Failure failure;
+  while (!standard_error.empty()) {
+    const std::size_t end = std::min(standard_error.find('\n'), standard_error.size());
+    const std::string_view line = standard_error.substr(0, std::min(end, kMaxReason));
+    standard_error.remove_prefix(std::min(end + 1, standard_error.size()));
+    if (line.starts_with("error: ")) failure.what = line.substr(7);
+    if (line.starts_with("hint: ")) failure.hint = line.substr(6);
+  }
+  for (const Fault fault : {Fault::kUsage, Fault::kBadInput, Fault::kNoInput, Fault::kUnavailable,
+                            Fault::kCannotWrite, Fault::kIo, Fault::kBusy, Fault::kBadProfile})
+    if (signal == 0 && static_cast<int>(fault) == exit_code) failure.fault = fault;
+  if (signal != 0) {
+    failure.what = fmt::format("Preparing ended in a crash ({})", ::strsignal(signal));
+    failure.hint =
+        "Repair the model in another program and drop it again; if the machine is short "
+        "of memory, lower memory_bytes or give it more.";
+  }
+  if (failure.what.empty())
+    failure.what = fmt::format("Preparing failed with exit code {} and said nothing", exit_code);
+  if (failure.hint.empty()) failure.hint = "Run packmerger prepare on the model to see more.";
+  return failure;
+}
+
+void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events, const PrepareConfig& config) {
+  while (const std::optional<PrepareOrder> order = orders.pop()) {
+    try {
+      const Prepared prepared = prepare(*order, events, config);
+      events.push(prepared);
+    } catch (const Error& error) {
+      events.push(PrepareFailed{order->job, {error.fault(), error.what(), error.hint()}});
+    } catch (const std::exception& error) {
+      events.push(PrepareFailed{
+          order->job, {Fault::kInternal, error.what(), "Look into the daemon's messages."}});
+    }
+    remove_leftovers(order->out, order->out.parent_path() / "tmp");
+  }
+}
+
+}  // namespace packmerger

@@ -1,0 +1,30 @@
+// The threads that do the daemon's slow work: the worker prepares jobs in child processes, the
+// clerk moves files, a sender per printer prints. Each takes orders from its queue until that is
+// closed, and answers through `events`.
+#pragma once
+
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/messages.h"
+
+namespace packmerger {
+
+// Each runs on the calling thread until its orders are closed and done.
+void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events, const PrepareConfig& config);
+void run_clerk(Queue<ClerkOrder>& orders, Queue<Event>& events);
+void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer);
+
+// "[ 42%] packing", as packmerger writes it where standard error is no terminal.
+struct ProgressLine {
+  std::string stage;
+  double fraction = 0;
+};
+std::optional<ProgressLine> progress_line(std::string_view line);
+
+// What a child process that failed wrote last: "error: …" and "hint: …".
+Failure child_failure(int exit_code, int signal, std::string_view standard_error);
+
+}  // namespace packmerger
