@@ -57,12 +57,13 @@ std::size_t FdPort::read(char* data, std::size_t size, double timeout_s) {
 }
 
 std::size_t FdPort::write(std::string_view bytes, double timeout_s) {
-  if (!wait(POLLOUT, timeout_s)) return 0;
-  const ssize_t count = ::write(fd_, bytes.data(), bytes.size());
-  if (count >= 0) return static_cast<std::size_t>(count);
-  if (errno == EIO || errno == ENXIO || errno == ENODEV) throw_gone(name_);
-  if (try_again(errno)) return 0;
-  throw_failed(name_, "write to", errno);
+  while (true) {
+    const ssize_t count = ::write(fd_, bytes.data(), bytes.size());
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno == EIO || errno == ENXIO || errno == ENODEV) throw_gone(name_);
+    if (!try_again(errno)) throw_failed(name_, "write to", errno);
+    if (!wait(POLLOUT, std::exchange(timeout_s, 0))) return 0;
+  }
 }
 
 }  // namespace packmerger

@@ -41,8 +41,9 @@ class FdPort : public Port {
   int fd_;
 };
 
-// Both take the locked port and throw as open_port() does. `path` is resolved, `name` is for people.
-// open_serial_port returns nothing where libserialport does not take the terminal for a serial port.
+// Both take the locked port and throw as open_port() does. `path` is resolved, `name` is for
+// people. open_serial_port returns nothing where libserialport does not take the terminal for a
+// serial port.
 std::unique_ptr<Port> open_serial_port(const std::string& path, const std::string& name, int baud,
                                        Descriptor& lock);
 std::unique_ptr<Port> open_termios_port(const std::string& name, int baud, Descriptor lock);

@@ -62,7 +62,7 @@ bool tells_halt(std::string_view line) {
 
 bool tells_heater_failure(std::string_view line) {
   static constexpr std::array<std::string_view, 6> kTexts = {
-      "Heating failed",  "Thermal Runaway",   "Thermal Malfunction",
+      "Heating failed",    "Thermal Runaway",   "Thermal Malfunction",
       "MAXTEMP triggered", "MINTEMP triggered", "Invalid extruder number"};
   return std::any_of(kTexts.begin(), kTexts.end(),
                      [&](std::string_view text) { return has(line, text); });

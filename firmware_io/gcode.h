@@ -27,9 +27,9 @@ std::string numbered_gcode(std::size_t number, std::string_view command);
 // The first word of a command: "G1" of "G1 X10", "M109" of "M109 S200".
 std::string_view gcode_word(std::string_view command);
 
-bool is_heating(std::string_view command);     // blocks until a temperature is reached
-bool is_long(std::string_view command);        // may block long: homing, dwelling, waiting for moves
-bool waits_for_user(std::string_view command); // M0 or M1 without a time
+bool is_heating(std::string_view command);  // blocks until a temperature is reached
+bool is_long(std::string_view command);     // may block long: homing, dwelling, waiting for moves
+bool waits_for_user(std::string_view command);  // M0 or M1 without a time
 
 enum class GcodeReplyKind {
   kOk,
@@ -50,7 +50,7 @@ enum class GcodeReplyKind {
 
 struct GcodeReply {
   GcodeReplyKind kind = GcodeReplyKind::kOther;
-  std::string text;              // the whole line unless said otherwise above
+  std::string text;  // the whole line unless said otherwise above
   std::size_t number = 0;
   bool waiting = false;
   bool has_temperature = false;  // of kOk: the answer to M105

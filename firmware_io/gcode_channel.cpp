@@ -103,8 +103,7 @@ Answer identify(GcodeChannel& channel, const StreamOptions& options, const Print
     // A very old firmware knows no M115, yet says ok.
     if (answer.ok && ++answered == 2) return answer;
   }
-  throw Error(Fault::kUnavailable,
-              "Nothing that speaks G-code answers at " + channel.name(),
+  throw Error(Fault::kUnavailable, "Nothing that speaks G-code answers at " + channel.name(),
               "Check that the printer is on, and that the profile's dialect and link.baud fit it.");
 }
 
@@ -113,11 +112,13 @@ void reset_line_count(GcodeChannel& channel, const StreamOptions& options,
   std::string line = numbered_gcode(0, "M110 N0");
   line.pop_back();
   for (int i = 0; i < kTries; ++i) {
-    if (ask(channel, line, options.timeout_s / kTries, control, [](const Answer& a) { return a.ok; })
-            .ok)
+    if (ask(channel, line, options.timeout_s / kTries, control, [](const Answer& a) {
+          return a.ok;
+        }).ok)
       return drain(channel);
   }
-  throw Error(Fault::kUnavailable, "The printer at " + channel.name() + " does not take line numbers",
+  throw Error(Fault::kUnavailable,
+              "The printer at " + channel.name() + " does not take line numbers",
               "Switch the printer off and on, then print the job again.");
 }
 

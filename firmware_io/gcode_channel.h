@@ -26,8 +26,8 @@ class GcodeChannel {
   std::optional<GcodeReply> take_line();
 
   Port& port_;
-  std::string pending_;        // read, not yet taken
-  std::size_t scanned_ = 0;    // of pending_, known to hold no line ending
+  std::string pending_;      // read, not yet taken
+  std::size_t scanned_ = 0;  // of pending_, known to hold no line ending
 };
 
 // What the answer to M115 says.

@@ -157,8 +157,9 @@ void GcodeStream::handle_resend(std::size_t asked, std::size_t number) {
   if (asked > 0 && asked + kSlack < number) {
     if (asked == far_back_) {
       may_send_ = false;
-      fail("The printer has lost its place (it asks for line " + std::to_string(asked) + " after line " +
-               std::to_string(number) + "): it was reset in the middle of the print",
+      fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
+               " after line " + std::to_string(number) +
+               "): it was reset in the middle of the print",
            "Clear the bed and print the job again; check the printer's power supply.");
     }
     far_back_ = asked;
@@ -167,8 +168,9 @@ void GcodeStream::handle_resend(std::size_t asked, std::size_t number) {
   asked_times_ = next == asked_ ? asked_times_ + 1 : 1;
   asked_ = next;
   if (asked_times_ >= kMaxSameResend)
-    fail("The printer asked ten times for line " + std::to_string(next) + " (" + command(next) + ")",
-         "Use a shorter or better shielded cable, and check that link.baud fits the printer.");
+    fail(
+        "The printer asked ten times for line " + std::to_string(next) + " (" + command(next) + ")",
+        "Use a shorter or better shielded cable, and check that link.baud fits the printer.");
   resend_ = Resend{next, channel_.now_s() + kResendWait_s};
 }
 
@@ -181,8 +183,9 @@ void GcodeStream::handle_failed_heater(const GcodeReply& reply) {
     if (next && (next->kind == GcodeReplyKind::kHalted || next->kind == GcodeReplyKind::kStart))
       may_send_ = false;
   }
-  fail("A heater of the printer failed: " + reply.text,
-       "Switch the printer off, check its heater and temperature sensor, then print the job again.");
+  fail(
+      "A heater of the printer failed: " + reply.text,
+      "Switch the printer off, check its heater and temperature sensor, then print the job again.");
 }
 
 void GcodeStream::obey_requests(std::size_t number) {

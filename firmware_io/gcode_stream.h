@@ -61,14 +61,14 @@ class GcodeStream {
 
   bool cancelling_ = false;
   bool may_send_ = true;
-  bool position_seen_ = false;   // by an M114 behind the program
-  bool busy_seen_ = false;       // the printer says when it is busy
-  std::string prompt_;           // what the printer asks its user
+  bool position_seen_ = false;  // by an M114 behind the program
+  bool busy_seen_ = false;      // the printer says when it is busy
+  std::string prompt_;          // what the printer asks its user
 
   // of the line that is being exchanged
   int owed_oks_ = 0;
   std::optional<Resend> resend_;
-  bool recovering_ = false;      // an M105 was sent behind it
+  bool recovering_ = false;         // an M105 was sent behind it
   bool taken_for_granted_ = false;  // only that M105 was answered
   int attempts_ = 0;
   double sent_at_s_ = 0;
@@ -76,10 +76,10 @@ class GcodeStream {
   double attempt_at_s_ = 0;
 
   // over several lines
-  int unproven_ = 0;             // lines in a row that were taken for granted
-  std::size_t asked_ = 0;        // the line last asked for,
-  int asked_times_ = 0;          // and how often
-  std::size_t far_back_ = 0;     // a request too far back to be true
+  int unproven_ = 0;          // lines in a row that were taken for granted
+  std::size_t asked_ = 0;     // the line last asked for,
+  int asked_times_ = 0;       // and how often
+  std::size_t far_back_ = 0;  // a request too far back to be true
 };
 
 }  // namespace packmerger

@@ -140,7 +140,8 @@ std::vector<std::string_view> split_actions(std::string_view program) {
     const std::string_view rest = program.substr(offset);
     const std::uint8_t action = byte_at(rest, 0);
     const std::size_t length = action_length(rest);
-    const bool known = fixed_length(action) > 0 || action == 0x88 || action == 0x95 || action == kBuildStart;
+    const bool known =
+        fixed_length(action) > 0 || action == 0x88 || action == 0x95 || action == kBuildStart;
     if (!known) refuse(offset, "holds the unknown action " + hex(action));
     if (action == kFactoryReset) refuse(offset, "would reset the printer to factory settings");
     if (length == 0) refuse(offset, "is cut short in action " + hex(action));

@@ -1,5 +1,6 @@
 // The bytes of s3g, the MakerBot protocol, after its published specification and the Sailfish
-// source: packets with checksums, and the actions that an x3g file is made of. No port is known here.
+// source: packets with checksums, and the actions that an x3g file is made of. No port is known
+// here.
 #pragma once
 
 #include <cstddef>
@@ -36,20 +37,25 @@ enum Action : std::uint8_t {
 };
 
 enum Response : std::uint8_t {
-  kGenericError = 0x80,     // a byte outside a packet; repeated without end until a packet comes
+  kGenericError = 0x80,  // a byte outside a packet; repeated without end until a packet comes
   kOk = 0x81,
-  kBufferFull = 0x82,       // the action was dropped whole
+  kBufferFull = 0x82,  // the action was dropped whole
   kChecksumMismatch = 0x83,
   kTooLong = 0x84,
   kUnknownQuery = 0x85,
-  kCancelled = 0x89,        // at the printer's panel
+  kCancelled = 0x89,  // at the printer's panel
   kBuildingFromCard = 0x8A,
   kOverheated = 0x8B,
-  kPacketTimeout = 0x8C     // a packet that did not come to its end
+  kPacketTimeout = 0x8C  // a packet that did not come to its end
 };
 
 enum class BuildState : std::uint8_t {
-  kNone = 0, kRunning = 1, kFinished = 2, kPaused = 3, kCancelled = 4, kCancelling = 5
+  kNone = 0,
+  kRunning = 1,
+  kFinished = 2,
+  kPaused = 3,
+  kCancelled = 4,
+  kCancelling = 5
 };
 
 // Dallas/Maxim iButton CRC-8: polynomial x^8 + x^5 + x^4 + 1 reflected, start value 0.

@@ -108,9 +108,7 @@ std::string Channel::query(std::string_view payload, std::size_t reply_size) {
               "Check the cable, switch the printer off and on, then print the job again.");
 }
 
-std::uint32_t Channel::free_buffer() {
-  return read_integer(query(std::string(1, kFreeBuffer), 4));
-}
+std::uint32_t Channel::free_buffer() { return read_integer(query(std::string(1, kFreeBuffer), 4)); }
 
 bool Channel::is_finished() { return query(std::string(1, kIsFinished), 1)[0] != 0; }
 

@@ -62,11 +62,12 @@ void Print::connect(double boot_wait_s) {
     version = 0;
   }
   if (version == 0)
-    throw Error(Fault::kUnavailable, "Nothing that speaks s3g answers at " + channel_.name(),
-                "Check that the printer is on, and that the profile's dialect and link.baud fit it.");
+    throw Error(
+        Fault::kUnavailable, "Nothing that speaks s3g answers at " + channel_.name(),
+        "Check that the printer is on, and that the profile's dialect and link.baud fit it.");
   channel_.query(std::string(1, kInit), 0);
-  const bool busy = is_building(channel_.statistics().state) ||
-                    (channel_.board_status() & kStatusBusyAlone) != 0;
+  const bool busy =
+      is_building(channel_.statistics().state) || (channel_.board_status() & kStatusBusyAlone) != 0;
   if (busy)
     throw Error(Fault::kBusy, "The printer at " + channel_.name() + " is printing already",
                 "Wait until that print is done, or cancel it at the printer.");
@@ -219,8 +220,8 @@ void Print::watch() {
 void Print::judge(const Statistics& statistics) {
   if (statistics.state == BuildState::kRunning) seen_running_ = true;
   if (!seen_running_) return;  // the state is still that of the build before
-  const bool cancelled = statistics.state == BuildState::kCancelled ||
-                         statistics.state == BuildState::kCancelling;
+  const bool cancelled =
+      statistics.state == BuildState::kCancelled || statistics.state == BuildState::kCancelling;
   const bool reset = statistics.state == BuildState::kNone;
   if (cancelled || reset) may_abort_ = false;
   if (cancelled) fail("The build was cancelled at the printer", kPrintAgain);

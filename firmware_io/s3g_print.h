@@ -50,11 +50,11 @@ class Print {
   PrintControl& control_;
   const std::vector<std::string_view>* actions_ = nullptr;
 
-  std::uint32_t capacity_ = 0;       // of the printer's buffer, bytes
-  std::size_t start_ = 0;            // index of the build start that was accepted last
-  std::uint32_t after_start_ = 0;    // actions accepted since
-  bool started_ = false;             // a build start was accepted
-  bool ended_ = false;               // a build end was accepted
+  std::uint32_t capacity_ = 0;     // of the printer's buffer, bytes
+  std::size_t start_ = 0;          // index of the build start that was accepted last
+  std::uint32_t after_start_ = 0;  // actions accepted since
+  bool started_ = false;           // a build start was accepted
+  bool ended_ = false;             // a build end was accepted
   bool seen_running_ = false;
   bool may_abort_ = true;
   double watched_at_s_ = 0;

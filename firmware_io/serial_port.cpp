@@ -38,7 +38,8 @@ std::string last_message() {
 
 void configure(sp_port* port, const std::string& name, int baud) {
   if (sp_set_baudrate(port, baud) != SP_OK)
-    throw Error(Fault::kUsage, "The port " + name + " cannot run at " + std::to_string(baud) + " baud",
+    throw Error(Fault::kUsage,
+                "The port " + name + " cannot run at " + std::to_string(baud) + " baud",
                 "Set the printer's own baud rate in its profile, such as link.baud = 115200.");
   if (sp_set_bits(port, 8) != SP_OK || sp_set_parity(port, SP_PARITY_NONE) != SP_OK ||
       sp_set_stopbits(port, 1) != SP_OK || sp_set_flowcontrol(port, SP_FLOWCONTROL_NONE) != SP_OK)

@@ -15,7 +15,8 @@ namespace {
 
 class TermiosPort : public FdPort {
  public:
-  TermiosPort(std::string name, Descriptor fd) : FdPort(std::move(name), fd.get()), fd_(std::move(fd)) {}
+  TermiosPort(std::string name, Descriptor fd)
+      : FdPort(std::move(name), fd.get()), fd_(std::move(fd)) {}
 
  private:
   Descriptor fd_;

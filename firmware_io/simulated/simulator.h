@@ -18,19 +18,19 @@ struct SimulatorOptions {
 // Called once with the path of the pseudo-terminal that the printer listens at.
 using ListeningAt = std::function<void(const std::string& path)>;
 
-// A MakerBot Replicator with Sailfish 7.8: s3g, a 512-byte action buffer, replies 0x81, 0x82 (full),
-// 0x83 (checksum), 0x84, 0x85 and 0x8C as the firmware gives them, build name, state and
-// statistics, heaters that take their time. Record: one action a line in execution order, lower-case
-// hex of its payload ("9b…"), and "abort" where the host ended the build.
-// Returns once stop is true. Throws Error{kCannotWrite} when the record cannot be written,
-// Error{kInternal} when there is no pseudo-terminal.
+// A MakerBot Replicator with Sailfish 7.8: s3g, a 512-byte action buffer, replies 0x81, 0x82
+// (full), 0x83 (checksum), 0x84, 0x85 and 0x8C as the firmware gives them, build name, state and
+// statistics, heaters that take their time. Record: one action a line in execution order,
+// lower-case hex of its payload ("9b…"), and "abort" where the host ended the build. Returns once
+// stop is true. Throws Error{kCannotWrite} when the record cannot be written, Error{kInternal} when
+// there is no pseudo-terminal.
 void run_simulated_replicator(const SimulatorOptions& options, const ListeningAt& listening,
                               const std::atomic<bool>& stop);
 
 // A RepRap with Marlin 2.1: line numbers and checksums, Resend, four queued commands, busy every
 // two seconds, temperatures, M115, prompts, emergency commands. Record: one command a line in
-// execution order, without line number and checksum ("G1 X10 F3000"), and "halt" where it was killed.
-// Returns and throws as above.
+// execution order, without line number and checksum ("G1 X10 F3000"), and "halt" where it was
+// killed. Returns and throws as above.
 void run_simulated_marlin(const SimulatorOptions& options, const ListeningAt& listening,
                           const std::atomic<bool>& stop);
 
