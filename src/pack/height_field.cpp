@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pack/kernel.h"
+
 namespace packmerger {
 namespace {
 
@@ -22,7 +24,8 @@ CellField::CellField(int width, int height, int border, float empty)
       height_(height),
       border_(border),
       stride_(width + 2 * border),
-      values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border),
+      values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border) +
+                  kReadAhead,
               empty) {}
 
 HeightField::HeightField(const Vec3& build_mm, double grid_mm, int block, int growth)

@@ -83,6 +83,17 @@ std::vector<MapCell> filled_cells(Raster& raster) {
   return cells;
 }
 
+// Cells from all over the part first, so that a scan soon knows about how high it will come.
+std::vector<MapCell> spread(const std::vector<MapCell>& cells) {
+  constexpr std::size_t kStride = 16;
+  std::vector<MapCell> result;
+  result.reserve(cells.size());
+  for (std::size_t i = 0; i < cells.size(); i += kStride) result.push_back(cells[i]);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (i % kStride != 0) result.push_back(cells[i]);
+  return result;
+}
+
 // One cell for each block that holds any: the mean, or the number, of the cells in it.
 std::vector<MapCell> blocks(const std::vector<MapCell>& cells, int coarse, bool count) {
   std::map<std::pair<int, int>, std::pair<double, int>> sums;  // (y, x) → sum, number
@@ -209,7 +220,7 @@ RotatedPart PartMaker::rotated(const std::vector<int>& items, const WayUp& way, 
   part.inside_support_mm3 = way.inside_support_mm3;
   Raster reach = grown_low(maps, problem_.gap_mm + margin_mm_, sampling_slack(problem_.grid_mm),
                            problem_.grid_mm, growth_);
-  part.reach = filled_cells(reach);
+  part.reach = spread(filled_cells(reach));
   part.reach_low = {reach.x0, reach.y0};
   part.reach_high = {reach.x0 + reach.width - 1, reach.y0 + reach.height - 1};
   add_surface_cells(maps, part);

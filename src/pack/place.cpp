@@ -6,6 +6,8 @@
 #include <tuple>
 #include <vector>
 
+#include "pack/kernel.h"
+
 namespace packmerger {
 namespace {
 
@@ -49,37 +51,6 @@ Range in_blocks(const Range& fine, int coarse) {
   return {floor_division(fine.first, coarse), -floor_division(-fine.last, coarse)};
 }
 
-// The heights to which the part falls at the positions x, x+1, … of one row: the (max, +) scan.
-void fall(const CellField& upper, const std::vector<MapCell>& reach, int x, int y, double floor,
-          std::vector<float>& heights) {
-  std::fill(heights.begin(), heights.end(), static_cast<float>(floor));
-  const std::size_t count = heights.size();
-  float* __restrict height = heights.data();
-  for (const MapCell& cell : reach) {
-    const float* field = upper.row(x + cell.x, y + cell.y);
-    const float value = cell.value;
-    for (std::size_t i = 0; i < count; ++i) {
-      const float rest = field[i] - value;
-      height[i] = height[i] > rest ? height[i] : rest;
-    }
-  }
-}
-
-// Sums of the horizon below the part's hanging cells, at the same positions. weighted: each cell
-// counts as many times as its value says.
-template <bool weighted>
-void sum_horizon(const CellField& surface, const std::vector<MapCell>& hang, int x, int y,
-                 std::vector<float>& sums) {
-  std::fill(sums.begin(), sums.end(), 0.0F);
-  const std::size_t count = sums.size();
-  float* __restrict sum = sums.data();
-  for (const MapCell& cell : hang) {
-    const float* field = surface.row(x + cell.x, y + cell.y);
-    const float weight = weighted ? cell.value : 1.0F;
-    for (std::size_t i = 0; i < count; ++i) sum[i] += weight * field[i];
-  }
-}
-
 // One part in one rotation over one tray.
 class Rating {
  public:
@@ -112,10 +83,25 @@ class Rating {
   }
 
   // No cost at this position, however high the part ends up, is less.
-  double bound(int x, int y) const {
-    TrayMeasure measure = before_;
-    grow(x, y, floor(), measure);
-    return rules_.cost->lower_bound(measure);
+  double bound(int x, int y) const { return bound(x, y, floor()); }
+
+  // A height in row y, between two columns, above which no cost is within the limit.
+  double highest_worth_it(Range columns, int y, int step, double limit) const {
+    double low = floor();
+    double high = rules_.build_mm.z() - rotated_.box.max().z() + 2 * step * rules_.grid_mm;
+    if (!std::isfinite(limit) || high <= low) return high;
+    // The box grows least where the part lies within the contents' extent, or nearest to that.
+    const double inside = (tray_.contents.min().x() - rotated_.box.min().x()) / rules_.grid_mm / step;
+    const int before = std::clamp(static_cast<int>(std::floor(inside)), columns.first, columns.last);
+    const int behind = std::clamp(before + 1, columns.first, columns.last);
+    constexpr int kHalvings = 10;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      const bool worth_it = bound(before * step, y, middle) <= limit ||
+                            bound(behind * step, y, middle) <= limit;
+      (worth_it ? low : high) = middle;
+    }
+    return high;
   }
 
   // Of the positions in `columns` of row y, those between the first and the last whose bound does
@@ -127,6 +113,12 @@ class Rating {
   }
 
  private:
+  double bound(int x, int y, double z) const {
+    TrayMeasure measure = before_;
+    grow(x, y, z, measure);
+    return rules_.cost->lower_bound(measure);
+  }
+
   void grow(int x, int y, double z, TrayMeasure& measure) const {
     const Vec3 at(x * rules_.grid_mm, y * rules_.grid_mm, z);
     Vec3 low = rotated_.box.min() + at;
@@ -211,14 +203,18 @@ void rate_coarsely(const TrayState& tray, const Part& part, int rotation, const 
     const double limit = std::min(shortlist.limit(), own.limit());
     const Range row = rating.worth_trying(xs, y * step, step, limit);
     if (row.empty()) continue;
+    const float highest =
+        static_cast<float>(rating.highest_worth_it(row, y * step, step, limit));
     heights.resize(static_cast<std::size_t>(row.count()));
+    fall(tray.field.coarse_upper, rotated.coarse_reach, row.first, y,
+         static_cast<float>(rating.floor()), highest, heights);
+    if (*std::min_element(heights.begin(), heights.end()) > highest) continue;
     sums.resize(heights.size());
-    fall(tray.field.coarse_upper, rotated.coarse_reach, row.first, y, rating.floor(), heights);
-    sum_horizon<true>(tray.field.coarse_surface, rotated.coarse_hang, row.first, y, sums);
+    sum_field(tray.field.coarse_surface, rotated.coarse_hang, true, row.first, y, sums);
     for (std::size_t i = 0; i < heights.size(); ++i) {
-      const double z = heights[i];
       // Coarse heights err by about a block's own slope: only what is far too high is out.
-      if (rating.too_high(z - 2 * step * rules.grid_mm)) continue;
+      if (heights[i] > highest) continue;
+      const double z = heights[i];
       const int x = row.first + static_cast<int>(i);
       const double cost =
           rules.cost->evaluate(rating.measure(x * step, y * step, z, sums[i]));
@@ -238,9 +234,9 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
   const Ranges fine = fine_ranges(tray, rotated, rules);
   const int step = tray.field.coarse;
   const Range xs =
-      intersection(fine.x, {(candidate.x - 1) * step, (candidate.x + 1) * step});
+      intersection(fine.x, {(candidate.x - 1) * step, (candidate.x + 1) * step - 1});
   const Range ys =
-      intersection(fine.y, {(candidate.y - 1) * step, (candidate.y + 1) * step});
+      intersection(fine.y, {(candidate.y - 1) * step, (candidate.y + 1) * step - 1});
   const Rating rating(tray, part, rotated, rules);
   std::vector<float> heights;
   std::vector<float> sums;
@@ -248,15 +244,20 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
     const double limit = best ? best->cost : std::numeric_limits<double>::infinity();
     const Range row = rating.worth_trying(xs, y, 1, limit);
     if (row.empty()) continue;
+    const float floor = static_cast<float>(rating.floor());
+    const float highest = rules.on_plate_only
+                              ? floor
+                              : static_cast<float>(rating.highest_worth_it(row, y, 1, limit));
     heights.resize(static_cast<std::size_t>(row.count()));
+    fall(tray.field.upper, rotated.reach, row.first, y, floor, highest, heights);
+    if (*std::min_element(heights.begin(), heights.end()) > highest) continue;
     sums.resize(heights.size());
-    fall(tray.field.upper, rotated.reach, row.first, y, rating.floor(), heights);
-    sum_horizon<false>(tray.field.surface, rotated.hang, row.first, y, sums);
+    sum_field(tray.field.surface, rotated.hang, false, row.first, y, sums);
     for (std::size_t i = 0; i < heights.size(); ++i) {
       // On the plate the exact height counts, not its rounded copy.
-      const bool on_plate = heights[i] <= static_cast<float>(rating.floor());
-      const double z = on_plate ? rating.floor() : heights[i];
-      if (rating.too_high(z) || (rules.on_plate_only && !on_plate)) continue;
+      if (heights[i] > highest) continue;
+      const double z = heights[i] <= floor ? rating.floor() : heights[i];
+      if (rating.too_high(z)) continue;
       const int x = row.first + static_cast<int>(i);
       const Spot spot{candidate.rotation, x, y, z,
                       rules.cost->evaluate(rating.measure(x, y, z, sums[i])),
@@ -266,20 +267,26 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
   }
 }
 
-// Every position in every rotation.
+// Every position in every rotation, the promising ones first, so that the others are soon out.
 std::optional<Spot> look_everywhere(const TrayState& tray, const Part& part,
                                     const PlaceRules& rules) {
-  std::optional<Spot> best;
   const int step = tray.field.coarse;
+  std::vector<Candidate> windows;
   for (int rotation = 0; rotation < static_cast<int>(part.rotations->size()); ++rotation) {
-    const Ranges fine =
-        fine_ranges(tray, (*part.rotations)[static_cast<std::size_t>(rotation)], rules);
+    const RotatedPart& rotated = (*part.rotations)[static_cast<std::size_t>(rotation)];
+    const Ranges fine = fine_ranges(tray, rotated, rules);
+    if (fine.x.empty() || fine.y.empty()) continue;
+    const Rating rating(tray, part, rotated, rules);
     const Range xs = in_blocks(fine.x, step);
     const Range ys = in_blocks(fine.y, step);
-    for (int y = ys.first; y <= ys.last; y += 2)
-      for (int x = xs.first; x <= xs.last; x += 2)
-        look_closely(tray, part, {0, 0, rotation, x, y}, rules, best);
+    // A window reaches one block to each side, so every other block will do, and one more.
+    for (int y = ys.first; y <= ys.last + 1; y += 2)
+      for (int x = xs.first; x <= xs.last + 1; x += 2)
+        windows.push_back({rating.bound(x * step, y * step), 0, rotation, x, y});
   }
+  std::sort(windows.begin(), windows.end());
+  std::optional<Spot> best;
+  for (const Candidate& window : windows) look_closely(tray, part, window, rules, best);
   return best;
 }
 
