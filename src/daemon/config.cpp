@@ -220,6 +220,12 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what());
   }
+  const auto has = [&](const char* option) {
+    const std::vector<std::string>& options = printer.prepare_options;
+    return std::find(options.begin(), options.end(), option) != options.end();
+  };
+  if (has("--size") && has("--scale"))
+    refuse(file, line, table + " cannot have both size_mm and scale");
   if (printer.hands_over() && printer.handoff_folder.empty())
     refuse(file, line, table + " needs the key handoff_folder: this printer takes no job by wire");
   if (printer.hands_over() && !printer.port.empty())

@@ -103,6 +103,7 @@ Failure child_failure(int exit_code, int signal, std::string_view standard_error
         "Repair the model in another program and drop it again; if the machine is short "
         "of memory, lower memory_bytes or give it more.";
   }
+  if (failure.what.ends_with('.')) failure.what.pop_back();
   if (failure.what.empty())
     failure.what = fmt::format("Preparing failed with exit code {} and said nothing", exit_code);
   if (failure.hint.empty()) failure.hint = "Run packmerger prepare on the model to see more.";

@@ -1,0 +1,70 @@
+#include "cli/daemon_verb.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "daemon/client.h"
+
+namespace packmerger::cli {
+namespace {
+
+// Characters of a UTF-8 text, which is what a column's width counts.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
+}
+
+}  // namespace
+
+void add_daemon_options(CLI::App& verb, DaemonArguments& arguments) {
+  verb.add_option(
+          "--socket", arguments.socket,
+          "the daemon's socket; default: $PACKMERGER_SOCKET, or the one in its state folder")
+      ->type_name("PATH");
+  verb.add_flag("--json", arguments.json, "prints JSON");
+}
+
+nlohmann::json ask(const DaemonArguments& arguments, const nlohmann::json& request) {
+  return ask_daemon(
+      arguments.socket.empty() ? default_socket() : std::filesystem::path(arguments.socket),
+      request);
+}
+
+void print_json(const nlohmann::json& value) {
+  fmt::print("{}\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void print_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += row[i] + std::string(widths[i] - width(row[i]) + 2, ' ');
+    fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+  }
+}
+
+std::string time_text(const nlohmann::json& unix_s) {
+  if (!unix_s.is_number()) return "-";
+  const auto seconds = static_cast<std::time_t>(unix_s.get<double>());
+  std::tm local{};
+  ::localtime_r(&seconds, &local);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", local.tm_year + 1900, local.tm_mon + 1,
+                     local.tm_mday, local.tm_hour, local.tm_min);
+}
+
+std::string text_of(const nlohmann::json& object, const char* key) {
+  const auto found = object.find(key);
+  std::string text = found != object.end() && found->is_string() ? found->get<std::string>() : "";
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
+  return text;
+}
+
+}  // namespace packmerger::cli

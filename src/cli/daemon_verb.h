@@ -1,0 +1,34 @@
+// What the verbs that speak to the daemon share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace packmerger::cli {
+
+struct DaemonArguments {
+  std::string socket;  // empty: the default
+  bool json = false;
+};
+
+// --socket and --json.
+void add_daemon_options(CLI::App& verb, DaemonArguments& arguments);
+
+nlohmann::json ask(const DaemonArguments& arguments, const nlohmann::json& request);
+
+// JSON for programs, indented, on standard output.
+void print_json(const nlohmann::json& value);
+
+// Rows of equal length, the first one the heading; columns as wide as they need.
+void print_table(const std::vector<std::vector<std::string>>& rows);
+
+// Local time, "2026-03-01 14:05"; "-" for null.
+std::string time_text(const nlohmann::json& unix_s);
+
+// A text of the daemon's reply; empty when it is not there.
+std::string text_of(const nlohmann::json& object, const char* key);
+
+}  // namespace packmerger::cli

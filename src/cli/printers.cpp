@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/daemon_verb.h"
+#include "cli/verb.h"
+
+namespace packmerger::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Arguments {
+  DaemonArguments daemon;
+  std::string name;
+};
+
+std::vector<std::string> row_of(const json& printer) {
+  const json job = printer.value("job", json());
+  std::string doing = job.is_number() ? fmt::format("job {}", job.get<std::int64_t>()) : "idle";
+  if (printer.value("paused", false)) doing += ", paused";
+  const std::string port = text_of(printer, "port");
+  return {text_of(printer, "name"),
+          text_of(printer, "profile"),
+          text_of(printer, "approve"),
+          text_of(printer, "bed"),
+          doing,
+          port.empty() ? text_of(printer, "handoff_folder") : port,
+          text_of(printer, "folder")};
+}
+
+const std::vector<std::string> kHeading = {"PRINTER", "PROFILE", "APPROVE", "BED",
+                                           "DOES",    "AT",      "FOLDER"};
+
+void list(const Arguments& arguments) {
+  const json printers = ask(arguments.daemon, {{"verb", "printers.list"}});
+  if (arguments.daemon.json) return print_json(printers);
+  std::vector<std::vector<std::string>> rows = {kHeading};
+  for (const json& printer : printers) rows.push_back(row_of(printer));
+  print_table(rows);
+}
+
+void change(const Arguments& arguments, const std::string& verb) {
+  const json printer =
+      ask(arguments.daemon, {{"verb", "printers." + verb}, {"name", arguments.name}});
+  if (arguments.daemon.json) return print_json(printer);
+  print_table({kHeading, row_of(printer)});
+}
+
+}  // namespace
+
+void add_printers(CLI::App& program) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = program.add_subcommand("printers", "The daemon's printers");
+  verb->require_subcommand(1);
+  const auto action = [&](const std::string& name, const std::string& help) {
+    CLI::App* one = verb->add_subcommand(name, help);
+    add_daemon_options(*one, arguments->daemon);
+    return one;
+  };
+  action("list", "Every printer, its bed and what it does")->callback([arguments] {
+    list(*arguments);
+  });
+  for (const auto& [name, help] :
+       {std::pair{"clear",
+                  "Says that the printer's bed is clear, so that the next print may start"},
+        std::pair{"pause", "Starts no further print there"},
+        std::pair{"resume", "Starts prints there again"}}) {
+    CLI::App* one = action(name, help);
+    one->add_option("NAME", arguments->name, "the printer's name")->required();
+    one->callback([arguments, name = std::string(name)] { change(*arguments, name); });
+  }
+}
+
+}  // namespace packmerger::cli

@@ -1,0 +1,111 @@
+#include "daemon/send.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "base/error.h"
+#include "cli/daemon_verb.h"
+#include "cli/verb.h"
+#include "daemon/find_port.h"
+#include "daemon/job_folder.h"
+
+namespace packmerger::cli {
+namespace {
+
+struct Arguments {
+  std::string folder;
+  std::string port;
+  std::string to;
+  int tray = 1;
+  bool json = false;
+};
+
+// Ctrl-C is the link's business: it stops the printer properly before it ends.
+void show(const Progress& progress, const PrintReport& report) {
+  const double fraction =
+      report.total == 0 ? 0 : static_cast<double>(report.done) / static_cast<double>(report.total);
+  try {
+    progress.report(print_state_name(report.state), fraction);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kInterrupted) throw;
+  }
+}
+
+class Teller {
+ public:
+  explicit Teller(const Progress& progress) : progress_(progress) {}
+
+  void tell(const PrintReport& report) {
+    show(progress_, report);
+    if (report.state == PrintState::kWaiting && state_ != report.state)
+      fmt::print(stderr, "\nThe printer waits: {}\n", report.text);
+    if (report.state == PrintState::kCancelling && state_ != report.state)
+      fmt::print(stderr, "\nCancelling, please wait until the printer has stopped.\n");
+    state_ = report.state;
+  }
+
+ private:
+  const Progress& progress_;
+  std::optional<PrintState> state_;
+};
+
+void stream(const Arguments& arguments, int trays) {
+  const Profile profile = read_prepared_profile(arguments.folder);
+  const bool searches = arguments.port.empty() && profile.dialect != Dialect::kHandoff;
+  const std::string port = searches ? find_port(profile.link.usb_ids) : arguments.port;
+  {
+    const Progress progress = terminal_progress();
+    PrintControl control(&interrupted());
+    Teller teller(progress);
+    send_tray(
+        arguments.folder, arguments.tray, port,
+        [&](const PrintReport& report) { teller.tell(report); }, control);
+  }
+  if (arguments.json)
+    return print_json(
+        {{"state", "done"}, {"tray", arguments.tray}, {"trays", trays}, {"port", port}});
+  fmt::print("Printed tray {} of {}.\n", arguments.tray, trays);
+  if (arguments.tray < trays)
+    fmt::print("Clear the bed, then send the next one with --tray {}.\n", arguments.tray + 1);
+}
+
+void deliver(const Arguments& arguments) {
+  const std::filesystem::path from =
+      std::filesystem::absolute(arguments.folder + "/.").lexically_normal().parent_path();
+  const std::filesystem::path target =
+      hand_over(arguments.folder, arguments.to, from.filename().string());
+  if (arguments.json) return print_json({{"state", "handed_over"}, {"folder", target.string()}});
+  fmt::print("Handed over in {}; open it in the printer's own software.\n", target.string());
+}
+
+void run(const Arguments& arguments) {
+  const PreparedJob job = read_prepared(arguments.folder);
+  if (arguments.to.empty())
+    stream(arguments, job.trays);
+  else
+    deliver(arguments);
+}
+
+}  // namespace
+
+void add_send(CLI::App& program) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      program.add_subcommand("send", "Streams a prepared job to its printer, or hands it over");
+  verb->add_option("DIR", arguments->folder, "the job folder that prepare made")->required();
+  CLI::Option* port = verb->add_option(
+      "--port", arguments->port, "the printer's port; default: the one its USB id is found at");
+  CLI::Option* tray = verb->add_option("--tray", arguments->tray, "which tray of several")
+                          ->check(CLI::PositiveNumber);
+  verb->add_option("--to", arguments->to,
+                   "the folder to hand over in, for printers that take no job over a cable")
+      ->type_name("FOLDER")
+      ->excludes(port)
+      ->excludes(tray);
+  verb->add_flag("--json", arguments->json, "prints JSON");
+  verb->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace packmerger::cli
