@@ -1,9 +1,11 @@
 #include "shape/coarsen.h"
 
+#include <algorithm>
+#include <array>
+
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
 #include <OpenMesh/Tools/Decimater/ModEdgeLengthT.hh>
-#include <OpenMesh/Tools/Decimater/ModHausdorffT.hh>
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
@@ -20,6 +22,21 @@ using Decimater = OpenMesh::Decimater::DecimaterT<PlainMesh>;
 
 constexpr float kMaxAspectRatio = 8;
 constexpr float kMaxTurnDegrees = 60;
+// Where the surface is flat every collapse costs nothing; then short edges go first.
+constexpr double kLengthCost = 1e-5;
+
+using Quadric = OpenMesh::Decimater::ModQuadricT<PlainMesh>;
+class QuadricAndLength : public Quadric {
+ public:
+  using Quadric::Quadric;
+  float collapse_priority(const CollapseInfo& collapse) override {
+    const float error = Quadric::collapse_priority(collapse);
+    if (error == static_cast<float>(ILLEGAL_COLLAPSE)) return error;
+    const double squared_mm2 = (collapse.p0 - collapse.p1).sqrnorm();
+    // Rounding makes the error of flat places slightly negative, which would forbid them.
+    return std::max(error, 0.0F) + static_cast<float>(kLengthCost * squared_mm2 * squared_mm2);
+  }
+};
 
 PlainMesh to_plain(const Mesh& mesh) {
   PlainMesh plain;
@@ -59,9 +76,11 @@ TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max
   mesh.request_face_normals();
   mesh.update_face_normals();
   Decimater decimater(mesh);
-  OpenMesh::Decimater::ModQuadricT<PlainMesh>::Handle quadric;
+  OpenMesh::Decimater::ModHandleT<QuadricAndLength> quadric;
   decimater.add(quadric);
-  decimater.module(quadric).unset_max_err();  // it orders the collapses; the others permit them
+  // A quadric sums area times squared distance, each triangle three times.
+  const double patch_mm2 = max_edge_mm * max_edge_mm / 2;
+  decimater.module(quadric).set_max_err(3 * patch_mm2 * tolerance_mm * tolerance_mm, false);
   OpenMesh::Decimater::ModNormalFlippingT<PlainMesh>::Handle flipping;
   decimater.add(flipping);
   decimater.module(flipping).set_max_normal_deviation(kMaxTurnDegrees);
@@ -71,9 +90,6 @@ TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max
   OpenMesh::Decimater::ModAspectRatioT<PlainMesh>::Handle aspect;
   decimater.add(aspect);
   decimater.module(aspect).set_aspect_ratio(kMaxAspectRatio);
-  OpenMesh::Decimater::ModHausdorffT<PlainMesh>::Handle hausdorff;
-  decimater.add(hausdorff);
-  decimater.module(hausdorff).set_tolerance(tolerance_mm);
   decimater.initialize();
   decimater.decimate_to_faces(0, 0);
   mesh.garbage_collection();

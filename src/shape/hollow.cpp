@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "shape/coarsen.h"
 #include "shape/distance_grid.h"
@@ -41,15 +43,55 @@ double distance_to(const SurfaceQuery& outer, const TriangleSoup& soup) {
   return *std::min_element(distances.begin(), distances.end());
 }
 
-// The cavity's boundary with fewer triangles, normals still pointing away from the hollow.
-TriangleSoup coarse_boundary(const TriangleSoup& fine, const SurfaceQuery& outer, double wall_mm) {
-  double tolerance = kCoarsening * wall_mm;
-  for (int i = 0; i < 3; ++i, tolerance /= 2) {
-    TriangleSoup coarse = coarsened(fine, tolerance, kLongestEdge * wall_mm);
-    if (distance_to(outer, coarse) >= kLeastWall * wall_mm && !self_intersects(closed_mesh(coarse)))
-      return coarse;
+bool is_good(const TriangleSoup& boundary, const SurfaceQuery& outer, double wall_mm) {
+  return distance_to(outer, boundary) >= kLeastWall * wall_mm &&
+         !self_intersects(closed_mesh(boundary));
+}
+
+// The grid rounds off edges; points that came too near to the outer surface go back to the depth.
+TriangleSoup pushed_to_depth(TriangleSoup soup, const SurfaceQuery& outer, double wall_mm) {
+  parallel_for(soup.points.size(), [&](std::size_t i) {
+    Vec3& point = soup.points[i];
+    const SurfaceQuery::Nearest nearest = outer.nearest(point);
+    if (nearest.distance_mm > 0 && nearest.distance_mm < wall_mm)
+      point += (point - nearest.point) * (wall_mm / nearest.distance_mm - 1);
+  });
+  return soup;
+}
+
+// The cavity's boundary with fewer triangles; empty when no attempt keeps the wall.
+std::optional<TriangleSoup> coarse_boundary(const TriangleSoup& fine, const SurfaceQuery& outer,
+                                            double wall_mm) {
+  const TriangleSoup pushed = pushed_to_depth(fine, outer, wall_mm);
+  for (const double fraction : {1.0, 0.3, 0.1}) {
+    TriangleSoup coarse =
+        coarsened(pushed, fraction * kCoarsening * wall_mm, kLongestEdge * wall_mm);
+    if (is_good(coarse, outer, wall_mm)) return coarse;
   }
-  return fine;
+  if (is_good(pushed, outer, wall_mm)) return pushed;
+  return std::nullopt;
+}
+
+// The boundaries of the cavities at a depth of at least wall_mm, normals pointing away from the
+// hollow. Deeper levels are tried where the grid is too coarse for one.
+std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& outer,
+                                     const ShapeSettings& settings, const Progress& progress) {
+  for (const double extra : {0.0, 0.5, 1.0}) {
+    const double depth = settings.wall_mm + extra * settings.voxel_mm;
+    std::vector<TriangleSoup> all;
+    bool good = true;
+    for (const TriangleSoup& fine : split_components(grid.level(-depth, progress))) {
+      // Islands of matter in a cavity have a negative volume.
+      if (!good || signed_volume_mm3(fine) < settings.min_cavity_mm3) continue;
+      progress.report("hollowing", 0.6);
+      auto coarse = coarse_boundary(fine, outer, settings.wall_mm);
+      good = coarse.has_value();
+      if (coarse) all.push_back(std::move(*coarse));
+    }
+    if (good) return all;
+  }
+  throw Error(Fault::kBadInput, "The inner surface crosses itself at this wall thickness",
+              "Change wall_mm or lower voxel_mm a little and try again.");
 }
 
 TriangleSoup turned(TriangleSoup soup) {
@@ -131,18 +173,10 @@ Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warning
              const Progress& progress) {
   progress.report("hollowing", 0);
   const double wall = settings.wall_mm;
-  DistanceGrid grid(outer, settings.voxel_mm, wall, 0, progress);
+  DistanceGrid grid(outer, settings.voxel_mm, wall + settings.voxel_mm, 0, progress);
   progress.report("hollowing", 0.4);
-  std::vector<TriangleSoup> hollows;
-  for (TriangleSoup& boundary : split_components(grid.level(-wall, progress)))
-    if (signed_volume_mm3(boundary) >= settings.min_cavity_mm3)  // islands of matter are negative
-      hollows.push_back(std::move(boundary));
-
   const SurfaceQuery query(outer);
-  for (std::size_t i = 0; i < hollows.size(); ++i) {
-    progress.report("hollowing", 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(hollows.size()));
-    hollows[i] = coarse_boundary(hollows[i], query, wall);
-  }
+  const std::vector<TriangleSoup> hollows = boundaries(grid, query, settings, progress);
   Shell shell = solid_shell(without_swallowed_cavities(outer, hollows), settings);
   for (const TriangleSoup& boundary : hollows) {
     shell.cavity_points.push_back(point_inside(boundary));

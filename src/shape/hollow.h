@@ -15,13 +15,14 @@ namespace packmerger {
 // self-intersections, one component, and no nearer to the outer surface than 0.9 wall_mm.
 //
 // Too thin to hollow is an ordinary outcome: no cavities. Inner components of `outer` (the model's
-// own cavities) stay part of Shell::outer, and the wall is kept around them too.
+// own cavities) stay part of Shell::outer, and the wall is kept around them too; where that wall
+// would float free in a new cavity, the two cavities become one.
 //
 // Warnings: "sealed_cavity" (support or powder stays trapped in the model printed in one piece),
 // "thin_features" (more than half of the surface has less than two walls of matter below it).
 //
 // outer: closed, not self-intersecting, mm. Throws Error{kBadInput} when the wall needs a grid of
-// more than 200 million voxels.
+// more than 200 million voxels, or when no inner surface is found that does not cross itself.
 Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warnings,
              const Progress& progress);
 
