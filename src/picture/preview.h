@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "model/job.h"
 #include "model/mesh.h"
 #include "offscreen/offscreen.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/mesh.h"
-#include "offscreen/offscreen.h"
+#include "picture/part_colour.h"
 
 namespace packmerger {
 

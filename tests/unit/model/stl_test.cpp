@@ -95,6 +95,16 @@ TEST(Stl, RandomPosesStayClosed) {
   }
 }
 
+TEST(Stl, RealModelsStayClosedInAnyPose) {
+  PACKMERGER_TEST_MODEL(spot, "spot.obj");
+  const Mesh mesh = closed_mesh(fixtures::scaled_to(spot, 138));
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  pose.translation() = Vec3(200, 300, 250);
+  const Mesh placed = transformed(mesh, pose);
+  EXPECT_TRUE(read_back::is_closed(read_back::stl_facets(binary_stl({&placed}))));
+}
+
 TEST(Stl, NumbersThatAreNoCoordinatesAreRefused) {
   for (const double bad :
        {std::numeric_limits<double>::infinity(), 1e300, std::numeric_limits<double>::quiet_NaN()}) {
