@@ -35,6 +35,7 @@ def inside_matter(inner, outer):
 
 def check_gap(job, report):
     gap = job.data["packing"]["gap_mm"]
+    reach = max(1.5 * gap, gap + 0.5)
     trees = {part["id"]: Tree(job.triangles[part["id"]]) for part in job.readable_parts()}
     for tray in job.trays():
         ids = [part["id"] for part in job.parts_of_tray(tray)]
@@ -42,7 +43,6 @@ def check_gap(job, report):
         for at, first in enumerate(ids):
             for second in ids[at + 1:]:
                 a, b = trees[first], trees[second]
-                reach = max(1.5 * gap, gap + 0.5)
                 distance = surface_distance(a, b, reach)
                 if distance < least:
                     least, where = distance, f"parts {first} and {second}"
@@ -50,7 +50,8 @@ def check_gap(job, report):
                     close.append(f"{first} and {second} {distance:.4f} mm")
                 if inside_matter(a, b) or inside_matter(b, a):
                     swallowed.append(f"{first} and {second}")
-        figures = f"{least:.4f} mm least, {where}; {gap} mm promised" if len(ids) > 1 else "one part"
+        told = f"{least:.4f} mm least, {where}" if least < reach else f"more than {reach} mm"
+        figures = f"{told}; {gap} mm promised" if len(ids) > 1 else "one part"
         report.check(f"tray {tray}: parts keep gap_mm", not close, "; ".join(close[:6]) or figures)
         report.check(f"tray {tray}: no part inside another", not swallowed, "; ".join(swallowed[:6]))
     return trees
