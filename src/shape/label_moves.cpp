@@ -4,8 +4,10 @@
 #include <array>
 #include <deque>
 #include <tuple>
+#include <utility>
 
 #include "shape/boundary_surface.h"
+#include "shape/contacts.h"
 
 namespace packmerger {
 namespace {
@@ -176,24 +178,36 @@ int straighten_cuts(const TetMesh& mesh, Segments& segments, const Progress& pro
   constexpr double kLeastGain_mm2 = 1e-9;  // so that rounding never makes two moves undo each other
   LabelMoves moves(mesh, segments.of_tetrahedron, segments.count);
   const CutLength cut(mesh);
+  const Contacts contacts(mesh, segments);
+  // The label that gains most from the tetrahedron; -1 where it is best left alone.
+  const auto best_label = [&](int t) {
+    const double now = cut.of(moves, t, moves.label(t));
+    int best = -1;
+    double least = now - kLeastGain_mm2;
+    for (const int across : mesh.neighbours[t]) {
+      if (across < 0 || moves.label(across) == moves.label(t)) continue;
+      const double then = cut.of(moves, t, moves.label(across));
+      if (then >= least) continue;
+      least = then;
+      best = moves.label(across);
+    }
+    return best;
+  };
+  const auto touches_strangers = [&](int t, int label) {
+    return std::any_of(mesh.neighbours[t].begin(), mesh.neighbours[t].end(), [&](int across) {
+      return across >= 0 && !contacts.has(moves.label(across), label);
+    });
+  };
   int count = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     progress.check();
     const int before = count;
     for (int t = 0; t < mesh.count(); ++t) {
-      const double now = cut.of(moves, t, moves.label(t));
-      if (now <= 0) continue;
-      int best = -1;
-      double least = now - kLeastGain_mm2;
-      for (const int across : mesh.neighbours[t]) {
-        if (across < 0 || moves.label(across) == moves.label(t)) continue;
-        const double then = cut.of(moves, t, moves.label(across));
-        if (then >= least) continue;
-        least = then;
-        best = moves.label(across);
-      }
-      if (best < 0 || moves.change_of_defects(t, best) > 0 || !moves.can_leave(t)) continue;
-      moves.move(t, best);
+      const int to = best_label(t);
+      if (to < 0 || touches_strangers(t, to) || moves.change_of_defects(t, to) > 0 ||
+          !moves.can_leave(t))
+        continue;
+      moves.move(t, to);
       ++count;
     }
     if (count == before) break;

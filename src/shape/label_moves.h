@@ -47,8 +47,8 @@ int reassign_pinched(const TetMesh& mesh, Segments& segments, double reach_mm,
                      const Progress& progress);
 
 // Re-assigns teeth: tetrahedra whose move makes the area of the cuts, and the length of the cut curves
-// on the surface times the mesh's mean edge length, smaller together, and makes no new pinch. A few
-// sweeps. Returns how many moves were made.
+// on the surface times the mesh's mean edge length, smaller together, makes no new pinch, and lets no
+// two segments share faces that shared none. A few sweeps. Returns how many moves were made.
 int straighten_cuts(const TetMesh& mesh, Segments& segments, const Progress& progress);
 
 }  // namespace packmerger

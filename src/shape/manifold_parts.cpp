@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "shape/adjacency.h"
+#include "shape/contacts.h"
 #include "shape/label_moves.h"
 #include "shape/star_split.h"
 #include "shape/stars.h"
@@ -18,22 +17,6 @@ namespace packmerger {
 namespace {
 
 using Edge = std::pair<int, int>;  // lower index first
-
-// Which segments share faces, kept up to date, so that a split is given to a segment that already is
-// everyone's neighbour: otherwise tiny new cross-sections would come to be.
-class Contacts {
- public:
-  Contacts(const TetMesh& mesh, const Segments& segments) {
-    for (const SegmentEdge& edge : adjacency(mesh, segments)) pairs_.insert({edge.a, edge.b});
-  }
-  bool has(int a, int b) const { return a == b || pairs_.contains(std::minmax(a, b)); }
-  void add(int a, int b) {
-    if (a != b) pairs_.insert(std::minmax(a, b));
-  }
-
- private:
-  std::set<Edge> pairs_;
-};
 
 // One of the segments that meet at a pinch.
 struct Candidate {

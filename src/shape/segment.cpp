@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <functional>
 #include <limits>
-#include <queue>
 #include <tuple>
 #include <vector>
 
 #include "base/error.h"
 #include "base/random.h"
-#include "shape/label_moves.h"
 #include "shape/manifold_parts.h"
 
 namespace packmerger {
@@ -27,10 +25,16 @@ struct DualGraph {
       volume += volumes.back();
     }
     lengths.resize(neighbours.size());
+    double sum = 0;
+    int edges = 0;
     for (int t = 0; t < mesh.count(); ++t)
       for (int face = 0; face < 4; ++face)
-        if (const int across = neighbours[t][face]; across >= 0)
+        if (const int across = neighbours[t][face]; across >= 0) {
           lengths[t][face] = (centroids[t] - centroids[across]).norm();
+          sum += lengths[t][face];
+          ++edges;
+        }
+    if (sum > 0) bucket_mm = sum / edges / 4;
   }
   int count() const { return static_cast<int>(neighbours.size()); }
 
@@ -39,6 +43,7 @@ struct DualGraph {
   std::vector<Vec3> centroids;
   std::vector<double> volumes;  // mm³
   double volume = 0;            // V_o
+  double bucket_mm = 1;         // a quarter of the mean edge
 };
 
 // A tetrahedron that a cluster may take next.
@@ -51,50 +56,94 @@ struct Offer {
            std::tie(other.distance_mm, other.tetrahedron, other.cluster);
   }
 };
-using Offers = std::priority_queue<Offer, std::vector<Offer>, std::greater<>>;
 
-void offer_neighbours(const DualGraph& graph, const std::vector<int>& owner, const Offer& taken,
-                      Offers& offers) {
-  for (int face = 0; face < 4; ++face) {
-    const int across = graph.neighbours[taken.tetrahedron][face];
-    if (across >= 0 && owner[across] == kUnassigned)
-      offers.push({taken.distance_mm + graph.lengths[taken.tetrahedron][face], across,
-                   taken.cluster});
+// A priority queue for growth, where nothing is ever offered below what was taken last: offers lie in
+// buckets of equal width by distance, and only the bucket at hand is kept as a heap. The order is that
+// of one large heap.
+class Offers {
+ public:
+  explicit Offers(double width_mm) : per_mm_(1 / width_mm) {}
+
+  void push(const Offer& offer) {
+    const auto bucket = static_cast<std::size_t>(offer.distance_mm * per_mm_);
+    if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
+    buckets_[bucket].push_back(offer);
+    if (bucket == current_)
+      std::push_heap(buckets_[bucket].begin(), buckets_[bucket].end(), std::greater<>());
   }
-}
 
-// Grows one cluster from a seed over unassigned tetrahedra until it holds `target` mm³; `taken` gets
-// its tetrahedra. False where the room ended before.
+  bool pop(Offer& offer) {
+    while (current_ < buckets_.size() && buckets_[current_].empty()) {
+      if (++current_ < buckets_.size())
+        std::make_heap(buckets_[current_].begin(), buckets_[current_].end(), std::greater<>());
+    }
+    if (current_ >= buckets_.size()) return false;
+    std::vector<Offer>& heap = buckets_[current_];
+    std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+    offer = heap.back();
+    heap.pop_back();
+    return true;
+  }
+
+ private:
+  double per_mm_;
+  std::size_t current_ = 0;
+  std::vector<std::vector<Offer>> buckets_;
+};
+
+// The growth of one cluster or of many over unassigned tetrahedra.
+class Growth {
+ public:
+  Growth(const DualGraph& graph, std::vector<int>& owner)
+      : graph_(graph), owner_(owner), offers_(graph.bucket_mm) {}
+
+  void seed(int tetrahedron, int cluster) { offers_.push({0, tetrahedron, cluster}); }
+
+  // The tetrahedron that was assigned, or -1 when there is no room left.
+  int step() {
+    Offer taken{};
+    do {
+      if (!offers_.pop(taken)) return -1;
+    } while (owner_[taken.tetrahedron] != kUnassigned);
+    owner_[taken.tetrahedron] = taken.cluster;
+    for (int face = 0; face < 4; ++face) {
+      const int across = graph_.neighbours[taken.tetrahedron][face];
+      if (across >= 0 && owner_[across] == kUnassigned)
+        offers_.push({taken.distance_mm + graph_.lengths[taken.tetrahedron][face], across,
+                      taken.cluster});
+    }
+    return taken.tetrahedron;
+  }
+
+ private:
+  const DualGraph& graph_;
+  std::vector<int>& owner_;
+  Offers offers_;
+};
+
+// Grows one cluster from a seed until it holds `target` mm³; `taken` gets its tetrahedra. False where
+// the room ended before.
 bool grow_one(const DualGraph& graph, int seed, int cluster, double target, std::vector<int>& owner,
               std::vector<int>& taken) {
-  Offers offers;
-  offers.push({0, seed, cluster});
-  double volume = 0;
+  Growth growth(graph, owner);
+  growth.seed(seed, cluster);
   taken.clear();
-  while (!offers.empty() && volume < target) {
-    const Offer offer = offers.top();
-    offers.pop();
-    if (owner[offer.tetrahedron] != kUnassigned) continue;
-    owner[offer.tetrahedron] = cluster;
-    taken.push_back(offer.tetrahedron);
-    volume += graph.volumes[offer.tetrahedron];
-    offer_neighbours(graph, owner, offer, offers);
+  for (double volume = 0; volume < target;) {
+    const int t = growth.step();
+    if (t < 0) return false;
+    taken.push_back(t);
+    volume += graph.volumes[t];
   }
-  return volume >= target;
+  return true;
 }
 
 // Parallel growth: all clusters at once until everything reachable is assigned.
 std::vector<int> grow_all(const DualGraph& graph, const std::vector<int>& seeds) {
   std::vector<int> owner(graph.count(), kUnassigned);
-  Offers offers;
+  Growth growth(graph, owner);
   for (int cluster = 0; cluster < static_cast<int>(seeds.size()); ++cluster)
-    offers.push({0, seeds[cluster], cluster});
-  while (!offers.empty()) {
-    const Offer offer = offers.top();
-    offers.pop();
-    if (owner[offer.tetrahedron] != kUnassigned) continue;
-    owner[offer.tetrahedron] = offer.cluster;
-    offer_neighbours(graph, owner, offer, offers);
+    growth.seed(seeds[cluster], cluster);
+  while (growth.step() >= 0) {
   }
   return owner;
 }
@@ -196,7 +245,6 @@ Segments segment(TetMesh& mesh, const ShapeSettings& settings, std::uint64_t see
     segments = clustered(graph, std::move(seeds), settings, progress);
   }
   make_manifold(mesh, segments, progress, kFreeReach);
-  straighten_cuts(mesh, segments, progress);
   progress.report("segmenting", 1);
   return segments;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shape/adjacency.h"
+#include "shape/label_moves.h"
 #include "shape/stars.h"
 #include "shape/surface_walk.h"
 
@@ -16,7 +17,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kCreaseAngle = 40 * std::numbers::pi / 180;
-constexpr double kTolerance_mm = 0.05;        // of the outer and cavity surfaces
+constexpr double kTolerance_mm = 0.08;        // sampled; the promise is 0.1
 constexpr double kLeastVolumeFraction = 0.1;  // of a tetrahedron's volume at the start
 constexpr int kHalvings = 3;                  // of a step that is too long
 
@@ -231,9 +232,10 @@ double cut_roughness(const TetMesh& mesh, const Segments& segments) {
   return count > 0 ? sum / count : 0;
 }
 
-CutRoughness smooth_cuts(TetMesh& mesh, const Segments& segments, const ShapeSettings& settings,
+CutRoughness smooth_cuts(TetMesh& mesh, Segments& segments, const ShapeSettings& settings,
                          const Progress& progress) {
   CutRoughness roughness{cut_roughness(mesh, segments), 0};
+  straighten_cuts(mesh, segments, progress);
   const CutNet net = cut_net(mesh, segments);
   Smoother smoother(mesh);
   for (int round = 0; round < settings.smooth_rounds; ++round) {
