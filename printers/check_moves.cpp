@@ -223,8 +223,8 @@ class Follower {
   }
 
   Box3 volume_;
-  Where at_;                           // in the machine's coordinates
-  std::array<double, 3> shift_{};      // machine = program + shift
+  Where at_;                       // in the machine's coordinates
+  std::array<double, 3> shift_{};  // machine = program + shift
   double e_ = 0;
   double unit_mm_ = 1;
   bool relative_ = false;

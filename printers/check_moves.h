@@ -25,8 +25,8 @@ Box3 machine_volume(const Profile& profile);
 // position recall (M132); line numbers, checksums, both kinds of comments. Lines are judged by
 // their ends, arcs by their true extent, to 0.01 mm. An axis is unknown before it was homed or set;
 // after G28 it stands at 0, after G161, G162 and M132 it is unknown until it is told by G92 or an
-// absolute move. Moves along an unknown axis pass, extruding ones do not. G92 on a known axis shifts
-// the coordinates and moves nothing. Codes that move in ways not listed are faults.
+// absolute move. Moves along an unknown axis pass, extruding ones do not. G92 on a known axis
+// shifts the coordinates and moves nothing. Codes that move in ways not listed are faults.
 std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume);
 
 }  // namespace packmerger

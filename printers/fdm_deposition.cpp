@@ -17,10 +17,9 @@ TrayEstimate fdm_deposition_tray(const Profile& profile, const Tray& tray,
   progress.check();
   const double support_laid_mm3 = result.support_mm3 * settings.support_fill_fraction;
   result.support_g = support_laid_mm3 / 1000 * profile.material.support_density_g_cm3;
-  result.time_s =
-      settings.start_s +
-      (result.model_mm3 + support_laid_mm3) / 1000 / settings.deposition_cm3_h * 3600 +
-      layer_count(height_mm(tray), profile.layer_mm) * settings.layer_s;
+  result.time_s = settings.start_s +
+                  (result.model_mm3 + support_laid_mm3) / 1000 / settings.deposition_cm3_h * 3600 +
+                  layer_count(height_mm(tray), profile.layer_mm) * settings.layer_s;
   return result;
 }
 

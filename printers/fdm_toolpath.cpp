@@ -24,8 +24,7 @@ struct Island {
 std::vector<Island> islands_of(const Layer& layer) {
   std::vector<Island> islands;
   for (const Contour& contour : layer.contours)
-    if (contour.area_mm2 > 0)
-      islands.push_back({&contour, contour.area_mm2, contour.perimeter_mm});
+    if (contour.area_mm2 > 0) islands.push_back({&contour, contour.area_mm2, contour.perimeter_mm});
   for (const Contour& hole : layer.contours) {
     if (hole.area_mm2 > 0) continue;
     Island* around = nullptr;  // the smallest that can hold it
@@ -50,9 +49,9 @@ Bead bead(const FdmSettings& settings, double layer_mm) {
 LayerPath layer_path(const FdmSettings& settings, double layer_mm, const Layer& layer,
                      double exposed_mm2) {
   const double spacing_mm = bead(settings, layer_mm).spacing_mm;
-  double fill_mm2 = 0;       // inside the shells
-  double solid_mm2 = 0;      // of that, small islands
-  double perimeter_mm = 0;   // around what is filled
+  double fill_mm2 = 0;      // inside the shells
+  double solid_mm2 = 0;     // of that, small islands
+  double perimeter_mm = 0;  // around what is filled
   for (const Island& island : islands_of(layer)) {
     const double inner_mm2 =
         island.area_mm2 - (settings.shells - 0.5) * spacing_mm * island.perimeter_mm;
@@ -105,9 +104,9 @@ std::vector<double> exposed_areas(const FdmSettings& settings, double layer_mm,
       const double share = 1 - wall_mm2 * shells_mm / (flat_mm2 * depth_mm);
       const auto [low, high] = std::minmax({a.z(), b.z(), c.z()});
       const double from_mm = normal.z() > 0 ? low - depth_mm : low;
-      const int first =
-          std::clamp(static_cast<int>(std::lround(from_mm / layer_mm)), 0, count);
-      const int span = settings.solid_layers + static_cast<int>(std::lround((high - low) / layer_mm));
+      const int first = std::clamp(static_cast<int>(std::lround(from_mm / layer_mm)), 0, count);
+      const int span =
+          settings.solid_layers + static_cast<int>(std::lround((high - low) / layer_mm));
       const double each_mm2 = flat_mm2 * share * settings.solid_layers / std::max(1, span);
       for (int layer = first; layer < std::min(count, first + span); ++layer)
         exposed[layer] += each_mm2;
@@ -126,8 +125,7 @@ double support_time_s(const FdmSettings& settings, double layer_mm, double suppo
          settings.interface_s_per_mm2 * interface_mm2;
 }
 
-TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray,
-                               const Progress& progress) {
+TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray, const Progress& progress) {
   const FdmSettings& settings = profile.fdm;
   require_toolpath(profile);
   const double angle = radians(profile.support_angle_deg);
@@ -153,8 +151,8 @@ TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray,
   result.model_mm3 = path_mm * bead(settings, profile.layer_mm).area_mm2;
   result.model_g = result.model_mm3 / 1000 * profile.material.model_density_g_cm3;
   result.support_mm3 = support.volume_mm3;
-  result.support_g = held_mm3 * settings.support_fill_fraction / 1000 *
-                     profile.material.support_density_g_cm3;
+  result.support_g =
+      held_mm3 * settings.support_fill_fraction / 1000 * profile.material.support_density_g_cm3;
   return result;
 }
 

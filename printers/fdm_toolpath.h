@@ -22,7 +22,7 @@ struct LayerPath {
   double internal_mm = 0;  // the other shells
   double solid_mm = 0;
   double sparse_mm = 0;
-  double fill_lines = 0;   // straight pieces that solid and sparse fill consist of
+  double fill_lines = 0;  // straight pieces that solid and sparse fill consist of
   double total_mm() const { return external_mm + internal_mm + solid_mm + sparse_mm; }
 };
 

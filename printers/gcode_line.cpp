@@ -23,8 +23,8 @@ std::optional<double> take_number(std::string_view& text) {
   std::string_view rest = text;
   if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
   double number = 0;
-  const auto [end, fault] = std::from_chars(rest.data(), rest.data() + rest.size(), number,
-                                            std::chars_format::fixed);
+  const auto [end, fault] =
+      std::from_chars(rest.data(), rest.data() + rest.size(), number, std::chars_format::fixed);
   if (fault != std::errc() || !std::isfinite(number)) return std::nullopt;
   text = rest.substr(static_cast<std::size_t>(end - rest.data()));
   return number;
@@ -45,8 +45,8 @@ GcodeLine::GcodeLine(std::string_view text) {
     while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
     const std::optional<double> number = take_number(text);
     if (letter_ == 0 && word == 'N') continue;
-    if (letter_ == 0 && (word == 'G' || word == 'M' || word == 'T') && number &&
-        *number >= 0 && *number < 1e6) {
+    if (letter_ == 0 && (word == 'G' || word == 'M' || word == 'T') && number && *number >= 0 &&
+        *number < 1e6) {
       letter_ = word;
       number_ = static_cast<int>(*number);
       sub_number_ = static_cast<int>(std::lround((*number - number_) * 10));

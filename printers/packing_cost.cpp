@@ -20,11 +20,11 @@ double paper_cost(double weight, const TrayMeasure& tray) {
 TrayEstimate predict_polyjet(const Profile& profile, const TrayMeasure& tray) {
   const PolyjetSettings& settings = profile.polyjet;
   TrayEstimate result;
-  result.time_s = settings.start_s + layer_count(tray.size_mm.z(), profile.layer_mm) *
-                                         polyjet_layer_s(settings, tray.size_mm.x(),
-                                                         tray.size_mm.y());
-  result.model_g = tray.material_mm3 / 1000 * settings.model_waste_factor *
-                   profile.material.model_density_g_cm3;
+  result.time_s =
+      settings.start_s + layer_count(tray.size_mm.z(), profile.layer_mm) *
+                             polyjet_layer_s(settings, tray.size_mm.x(), tray.size_mm.y());
+  result.model_g =
+      tray.material_mm3 / 1000 * settings.model_waste_factor * profile.material.model_density_g_cm3;
   result.support_g = tray.support_mm3 / 1000 * settings.support_g_per_cm3;
   return result;
 }
@@ -37,9 +37,10 @@ TrayEstimate predict_fdm(const Profile& profile, const TrayMeasure& tray) {
   result.model_g = tray.material_mm3 / 1000 * profile.material.model_density_g_cm3;
   result.support_g = support_laid_mm3 / 1000 * profile.material.support_density_g_cm3;
   if (settings.time == FdmTime::kDeposition) {
-    result.time_s = settings.start_s +
-                    (tray.material_mm3 + support_laid_mm3) / 1000 / settings.deposition_cm3_h * 3600 +
-                    layers * settings.layer_s;
+    result.time_s =
+        settings.start_s +
+        (tray.material_mm3 + support_laid_mm3) / 1000 / settings.deposition_cm3_h * 3600 +
+        layers * settings.layer_s;
     return result;
   }
   // The surface is not known here, so thin walls are assumed: solid, all beads at full speed. It is

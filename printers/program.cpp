@@ -34,9 +34,10 @@ bool start_has(const Profile& profile, std::initializer_list<std::pair<char, int
 void check_s3g_start(const Profile& profile) {
   const auto need = [&](bool there, const char* what, const char* codes) {
     if (there) return;
-    throw Error(Fault::kBadProfile,
-                fmt::format("Profile {}: slicer.start_gcode lacks {} ({})", profile.id, what, codes),
-                "Add it to the profile's start text; nothing is made that could harm the machine.");
+    throw Error(
+        Fault::kBadProfile,
+        fmt::format("Profile {}: slicer.start_gcode lacks {} ({})", profile.id, what, codes),
+        "Add it to the profile's start text; nothing is made that could harm the machine.");
   };
   need(start_has(profile, {{'G', 161}, {'G', 162}, {'G', 28}}), "homing", "G161, G162 or G28");
   need(start_has(profile, {{'M', 132}}), "the recall of the home position", "M132");
@@ -47,19 +48,19 @@ void check_s3g_start(const Profile& profile) {
 void check_volume(const Profile& profile, std::string_view gcode) {
   const std::optional<MoveFault> fault = check_moves(gcode, machine_volume(profile));
   if (!fault) return;
-  throw Error(Fault::kBadProfile,
-              fmt::format("Line {} of the program, \"{}\", {}", fault->line, fault->command,
-                          fault->what),
-              "Leave more room at the sides of the tray, or correct slicer.options, start_gcode "
-              "and end_gcode in the profile.");
+  throw Error(
+      Fault::kBadProfile,
+      fmt::format("Line {} of the program, \"{}\", {}", fault->line, fault->command, fault->what),
+      "Leave more room at the sides of the tray, or correct slicer.options, start_gcode "
+      "and end_gcode in the profile.");
 }
 
 // What gpx names the build after: the file's name.
 std::string file_name(const std::string& build_name) {
   std::string name = build_name.substr(0, kMaxNameLength);
   for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && std::string_view(" -_.").find(c) ==
-                                                               std::string_view::npos)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
+        std::string_view(" -_.").find(c) == std::string_view::npos)
       c = '_';
   // no name may be hidden, empty or an option of gpx
   const std::size_t first = name.find_first_not_of(" -.");
@@ -88,10 +89,11 @@ std::string to_x3g(const Profile& profile, const std::string& gcode, const std::
     bytes = read_file(folder.path() / name, kMaxProgramBytes);
   // the last command of a whole program is the end of the build and its one byte
   if (bytes.size() < 2 || bytes[bytes.size() - 2] != kEndOfBuild)
-    throw Error(Fault::kBadProfile,
-                fmt::format("gpx cannot convert the program for machine \"{}\": {}",
-                            profile.slicer.gpx_machine, result.err.substr(0, result.err.find("\n\n"))),
-                "Correct slicer.gpx_machine, start_gcode and end_gcode in the profile.");
+    throw Error(
+        Fault::kBadProfile,
+        fmt::format("gpx cannot convert the program for machine \"{}\": {}",
+                    profile.slicer.gpx_machine, result.err.substr(0, result.err.find("\n\n"))),
+        "Correct slicer.gpx_machine, start_gcode and end_gcode in the profile.");
   return bytes;
 }
 
@@ -107,7 +109,8 @@ std::optional<Program> make_program(const Profile& profile, const Tray& tray,
   Program program;
   if (sliced.skirt_left_out)
     program.warnings.push_back(
-        {"skirt_left_out", "The skirt that primes the nozzle is left out: the tray has no room for it."});
+        {"skirt_left_out",
+         "The skirt that primes the nozzle is left out: the tray has no room for it."});
   program.extension = profile.dialect == Dialect::kS3g ? "x3g" : "gcode";
   program.bytes = profile.dialect == Dialect::kS3g
                       ? to_x3g(profile, sliced.gcode, build_name, progress)

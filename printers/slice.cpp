@@ -1,11 +1,10 @@
 #include "printers/slice.h"
 
 #include <algorithm>
-#include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <numbers>
 
@@ -13,6 +12,7 @@
 
 #include "base/files.h"
 #include "base/process.h"
+#include "model/stl.h"
 #include "printers/check_moves.h"
 #include "printers/estimate.h"
 #include "printers/gcode_line.h"
@@ -25,28 +25,15 @@ constexpr double kTimeoutS = 3600;
 constexpr std::uint64_t kMaxGcodeBytes = std::uint64_t{4} << 30;
 constexpr double kOutsideMm = 0.01;  // what rounding may put a part outside by
 
-void append_float(std::string& bytes, double value) {
-  static_assert(std::endian::native == std::endian::little, "STL is little-endian");
-  const float narrow = static_cast<float>(value);
-  bytes.append(reinterpret_cast<const char*>(&narrow), sizeof narrow);
-}
-
-// All shells as one binary STL, moved by shift. Normals are left zero, as the format allows.
-std::string binary_stl(const Tray& tray, const Vec3& shift) {
-  std::uint32_t count = 0;
-  for (const Mesh& part : tray.parts) count += static_cast<std::uint32_t>(part.n_faces());
-  std::string bytes(80, '\0');
-  bytes.reserve(84 + std::size_t{50} * count);
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  for (const Mesh& part : tray.parts) {
-    for (const auto face : part.faces()) {
-      bytes.append(12, '\0');
-      for (const Vec3& corner : corners(part, face))
-        for (int axis = 0; axis < 3; ++axis) append_float(bytes, corner[axis] + shift[axis]);
-      bytes.append(2, '\0');
-    }
-  }
-  return bytes;
+// All shells as one STL, in the machine's own coordinates.
+std::string stl_of(const Tray& tray, const Vec3& shift) {
+  Pose pose = Pose::Identity();
+  pose.translate(shift);
+  std::vector<Mesh> moved;
+  for (const Mesh& part : tray.parts) moved.push_back(transformed(part, pose));
+  std::vector<const Mesh*> parts;
+  for (const Mesh& part : moved) parts.push_back(&part);
+  return binary_stl(parts);
 }
 
 Box3 contents_box(const Tray& tray) {
@@ -62,12 +49,13 @@ void check_contents(const Profile& profile, const Box3& box) {
   const Vec3 build = profile.build();
   if ((box.min().array() < -kOutsideMm).any() ||
       (box.max().array() > build.array() + kOutsideMm).any())
-    throw Error(Fault::kBadInput,
-                fmt::format("The tray's contents reach from ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, "
-                            "{:.2f}, {:.2f}) mm and leave the build volume of {:g} × {:g} × {:g} mm",
-                            box.min().x(), box.min().y(), box.min().z(), box.max().x(),
-                            box.max().y(), box.max().z(), build.x(), build.y(), build.z()),
-                "Scale the model down, split it, or choose a larger printer.");
+    throw Error(
+        Fault::kBadInput,
+        fmt::format("The tray's contents reach from ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, "
+                    "{:.2f}, {:.2f}) mm and leave the build volume of {:g} × {:g} × {:g} mm",
+                    box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(),
+                    box.max().z(), build.x(), build.y(), build.z()),
+        "Scale the model down, split it, or choose a larger printer.");
   if (box.min().z() > kOutsideMm)
     throw Error(Fault::kBadInput,
                 fmt::format("Nothing stands on the plate: the lowest part is {:.2f} mm above it",
@@ -95,8 +83,7 @@ double seconds_of(std::string_view text) {
 std::string_view after(std::string_view gcode, std::string_view label) {
   const std::size_t at = gcode.rfind(label);
   if (at == std::string_view::npos)
-    throw Error(Fault::kInternal,
-                fmt::format("PrusaSlicer's G-code lacks \"{}\"", label),
+    throw Error(Fault::kInternal, fmt::format("PrusaSlicer's G-code lacks \"{}\"", label),
                 "Install the PrusaSlicer that comes with Debian 12 (2.5.0).");
   const std::string_view rest = gcode.substr(at + label.size());
   return rest.substr(0, rest.find('\n'));
@@ -132,8 +119,8 @@ Extruded extruded(std::string_view gcode) {
 
 void run_slicer(const fs::path& folder, const Progress& progress) {
   ProcessSpec spec;
-  spec.argv = {"prusa-slicer", "-g", "--load", "settings.ini", "--dont-arrange",
-               "-o",           "tray.gcode", "tray.stl"};
+  spec.argv = {"prusa-slicer",   "-g", "--load",     "settings.ini",
+               "--dont-arrange", "-o", "tray.gcode", "tray.stl"};
   spec.set_env = {{"LC_ALL", "C"}};
   spec.unset_env = {"DISPLAY", "WAYLAND_DISPLAY"};
   spec.folder = folder;
@@ -168,14 +155,13 @@ SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
   const Box3 box = contents_box(tray);
   check_contents(profile, box);
   const Vec3 far_room = profile.build() - box.max();
-  const double room_mm =
-      std::min(box.min().head<2>().minCoeff(), far_room.head<2>().minCoeff());
+  const double room_mm = std::min(box.min().head<2>().minCoeff(), far_room.head<2>().minCoeff());
   const SlicerConfig config = slicer_config(profile, flavour, room_mm);
 
   progress.report("slicing", 0);
   const TemporaryFolder folder;
   write_file_whole(folder.path() / "settings.ini", ini_text(config));
-  write_file_whole(folder.path() / "tray.stl", binary_stl(tray, machine_volume(profile).min()));
+  write_file_whole(folder.path() / "tray.stl", stl_of(tray, machine_volume(profile).min()));
   run_slicer(folder.path(), progress);
 
   SlicedTray sliced;

@@ -22,9 +22,9 @@ enum class SliceFlavour {
 };
 
 struct SlicedTray {
-  std::string gcode;       // in the machine's own coordinates
-  double time_s = 0;       // by the slicer's clock
-  double model_mm3 = 0;    // extruded for everything that is not support, skirt included
+  std::string gcode;     // in the machine's own coordinates
+  double time_s = 0;     // by the slicer's clock
+  double model_mm3 = 0;  // extruded for everything that is not support, skirt included
   double model_g = 0;
   double support_mm3 = 0;  // extruded as support and support interface
   double support_g = 0;

@@ -107,13 +107,12 @@ std::vector<std::vector<int>> facets_by_layer(const Mesh& part, double layer_mm,
 }
 
 // How far the support reaches in x and y, in each layer.
-void extend_by_support(const std::vector<const Mesh*>& parts, double layer_mm,
-                       double support_angle, std::vector<Layer>& layers) {
+void extend_by_support(const std::vector<const Mesh*>& parts, double layer_mm, double support_angle,
+                       std::vector<Layer>& layers) {
   const SupportGrid grid = support_grid(parts, kExtentLines);
   std::vector<std::vector<SupportSpan>> rows(grid.rows);
-  for_each_support_row(
-      parts, grid, support_angle,
-      [&](int row, const std::vector<SupportSpan>& spans) { rows[row] = spans; });
+  for_each_support_row(parts, grid, support_angle,
+                       [&](int row, const std::vector<SupportSpan>& spans) { rows[row] = spans; });
   const int count = static_cast<int>(layers.size());
   // Support in one column or row of cells, as a sum of steps up and down the layers: what it costs
   // does not depend on how long the spans are.

@@ -23,9 +23,14 @@ constexpr double kFirstLayerGrowthMm = 3;  // of support on the plate
 constexpr double kSupportReachNozzles = 4;
 constexpr double kLineNozzles = 1.3;  // a first layer's line, generously
 
-constexpr std::array<std::string_view, 8> kDerived{
-    "bed_shape",  "max_print_height", "layer_height", "start_gcode",
-    "end_gcode",  "support_material_threshold", "use_relative_e_distances", "gcode_comments"};
+constexpr std::array<std::string_view, 8> kDerived{"bed_shape",
+                                                   "max_print_height",
+                                                   "layer_height",
+                                                   "start_gcode",
+                                                   "end_gcode",
+                                                   "support_material_threshold",
+                                                   "use_relative_e_distances",
+                                                   "gcode_comments"};
 
 std::optional<double> number(std::string_view text) {
   double value = 0;
@@ -89,10 +94,9 @@ void fit_into(double room_mm, const Profile& profile, SlicerConfig& config) {
     config.values["raft_first_layer_expansion"] = fmt::format("{:.3g}", growth_mm);
   }
   const double skirts = option(profile, "skirts", 1);
-  const double reach_mm = (support_mm > 0 ? support_mm + growth_mm : 0) +
-                          option(profile, "brim_width", 0) +
-                          option(profile, "skirt_distance", kSkirtDistanceMm) +
-                          skirts * kLineNozzles * nozzle_mm;
+  const double reach_mm =
+      (support_mm > 0 ? support_mm + growth_mm : 0) + option(profile, "brim_width", 0) +
+      option(profile, "skirt_distance", kSkirtDistanceMm) + skirts * kLineNozzles * nozzle_mm;
   if (skirts > 0 && room_mm < reach_mm) {
     config.values["skirts"] = "0";
     config.skirt_left_out = true;
@@ -128,8 +132,8 @@ SlicerConfig slicer_config(const Profile& profile, SliceFlavour flavour, double 
   for (const auto& [name, value] : profile.slicer.options) {
     if (std::find(kDerived.begin(), kDerived.end(), name) != kDerived.end())
       throw bad_option(name, "follows from the profile's other keys and may not be set");
-    if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") !=
-                            std::string::npos)
+    if (name.empty() ||
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
       throw bad_option(name, "is no name of an option");
     config.values[name] = value.find('\n') == std::string::npos ? value : escaped(value);
   }

@@ -11,10 +11,10 @@ namespace packmerger {
 namespace {
 
 constexpr int kVolumeLines = 1 << 20;
-constexpr int kBandRows = 8;             // rows one task reads
+constexpr int kBandRows = 8;  // rows one task reads
 constexpr double kHalfUnitsPerExtent = 0x1p29;
 constexpr double kLevelTangent = 0.0875;  // of 5°
-constexpr double kSineTolerance = 1e-6;  // so that a facet at the support angle itself needs none
+constexpr double kSineTolerance = 1e-6;   // so that a facet at the support angle itself needs none
 
 // x and y of a corner in whole half-units: corners are even, lines odd, so no line meets a corner.
 // Up to 2^29, so that products of differences fit 64 bits with room to spare.
@@ -92,8 +92,7 @@ class Reader {
  public:
   Reader(const std::vector<const Mesh*>& parts, const SupportGrid& grid, double support_angle)
       : grid_(grid) {
-    const double extent =
-        std::max(grid.columns * grid.cell_mm.x(), grid.rows * grid.cell_mm.y());
+    const double extent = std::max(grid.columns * grid.cell_mm.x(), grid.rows * grid.cell_mm.y());
     rounding_ = {grid.low, kHalfUnitsPerExtent / extent};
     facets_ = facets_of(parts, rounding_, support_angle);
     for (int column = 0; column < grid.columns; ++column)
@@ -113,8 +112,7 @@ class Reader {
     const int end_row = std::min(first_row + kBandRows, grid_.rows);
     for (std::size_t i = bands_.first[band]; i < bands_.first[band + 1]; ++i) {
       const Facet& facet = facets_[bands_.order[i]];
-      for (int row = first_row; row < end_row; ++row)
-        cross(facet, row, crossings[row - first_row]);
+      for (int row = first_row; row < end_row; ++row) cross(facet, row, crossings[row - first_row]);
     }
     for (int row = first_row; row < end_row; ++row) {
       std::vector<Crossing>& found = crossings[row - first_row];
@@ -154,14 +152,14 @@ class Reader {
   void cross(const Facet& facet, int row, std::vector<Crossing>& found) const {
     const auto& [a, b, c] = facet.corner;
     const std::int64_t y = y_[row];
-    // the facet's reach in x along this row, widened by a line on either side: the exact test decides
+    // the facet's reach in x along this row, widened by a line on either side: the exact test
+    // decides
     double low = INFINITY;
     double high = -INFINITY;
     for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
       if ((from[1] < y) == (to[1] < y)) continue;
       const double along = static_cast<double>(y - from[1]) / static_cast<double>(to[1] - from[1]);
-      const double x =
-          static_cast<double>(from[0]) + along * static_cast<double>(to[0] - from[0]);
+      const double x = static_cast<double>(from[0]) + along * static_cast<double>(to[0] - from[0]);
       low = std::min(low, x);
       high = std::max(high, x);
     }
@@ -196,7 +194,7 @@ class Reader {
 std::vector<SupportSpan> spans_of(const std::vector<Crossing>& crossings) {
   std::vector<SupportSpan> spans;
   int column = -1;
-  int depth = 0;       // how many parts the line is inside of
+  int depth = 0;        // how many parts the line is inside of
   double floor_mm = 0;  // top of the matter below, or the tray
   for (const Crossing& crossing : crossings) {
     if (crossing.column != column) {

@@ -190,8 +190,8 @@ TEST(Toolpath, LevelFacetsAreBridged) {
 }
 
 TEST(Estimate, TraysAddUp) {
-  for (const Profile& profile : {fixtures::plain_polyjet(), fixtures::plain_deposition(),
-                                 fixtures::plain_toolpath()}) {
+  for (const Profile& profile :
+       {fixtures::plain_polyjet(), fixtures::plain_deposition(), fixtures::plain_toolpath()}) {
     const Tray a = tray_of({box(Vec3(5, 5, 4), Vec3(25, 30, 14))});
     const Tray b = tray_of({shapes::resting_sphere(12, 3)});
     const Estimate both = estimate(profile, {a, b}, {3, 2}, Progress());

@@ -51,7 +51,8 @@ TEST(PackingCost, DepositionAgreesWithTheEstimate) {
   const Profile profile = with(fixtures::plain_deposition(), Objective::kPrinter);
   const Mesh part = shapes::box(Vec3(0, 0, 8), Vec3(10, 10, 18));
   const Estimate e = estimate(profile, {shapes::tray_of({part})}, {1, 0}, Progress());
-  EXPECT_NEAR(packing_cost(profile).evaluate(measure(Vec3(10, 10, 18), 800, 1000, 1)), e.cost, 1e-6);
+  EXPECT_NEAR(packing_cost(profile).evaluate(measure(Vec3(10, 10, 18), 800, 1000, 1)), e.cost,
+              1e-6);
 }
 
 TEST(PackingCost, RefusesAProfileItWouldDivideByZeroWith) {
@@ -70,12 +71,12 @@ TEST(PackingCost, LowerBoundHoldsForEveryTrayThatHoldsMore) {
                            fixtures::plain_toolpath()};
     const TrayMeasure few = measure(Vec3(number(900), number(600), number(400)), number(100000),
                                     number(1000000), *rc::gen::inRange(1, 20));
-    const TrayMeasure more =
-        measure(few.size_mm + Vec3(number(99), number(99), number(99)),
-                few.support_mm3 + number(10000), few.material_mm3 + number(10000),
-                few.parts + *rc::gen::inRange(0, 4));
+    const TrayMeasure more = measure(
+        few.size_mm + Vec3(number(99), number(99), number(99)), few.support_mm3 + number(10000),
+        few.material_mm3 + number(10000), few.parts + *rc::gen::inRange(0, 4));
     for (const Profile& profile : profiles)
-      for (const Objective objective : {Objective::kPaper, Objective::kPrinter, Objective::kHeight}) {
+      for (const Objective objective :
+           {Objective::kPaper, Objective::kPrinter, Objective::kHeight}) {
         const Cost cost = packing_cost(with(profile, objective));
         RC_ASSERT(cost.lower_bound(few) <= cost.evaluate(few));
         RC_ASSERT(cost.lower_bound(few) <= cost.evaluate(more));

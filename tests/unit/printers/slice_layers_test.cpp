@@ -63,8 +63,7 @@ TEST(SliceLayers, HolesCountNegative) {
   const Mesh cover = shapes::cover(Vec3(30, 20, 10), 2, Vec3(0, 0, 0));
   const Layer layer = cut({cover}, 1)[3];
   ASSERT_EQ(layer.contours.size(), 2U);
-  const auto [hole, outline] =
-      std::minmax(layer.contours[0].area_mm2, layer.contours[1].area_mm2);
+  const auto [hole, outline] = std::minmax(layer.contours[0].area_mm2, layer.contours[1].area_mm2);
   EXPECT_NEAR(outline, 600, 1e-9);
   EXPECT_NEAR(hole, -26 * 16, 1e-9);
   EXPECT_NEAR(layer.perimeter_mm, 2 * 50 + 2 * 42, 1e-9);
@@ -109,8 +108,8 @@ TEST(SliceLayers, PartsAddUpAndThreadsDoNotMatter) {
   const std::vector<Layer> only_a = cut({a}, 0.5);
   const std::vector<Layer> only_b = cut({b}, 0.5);
   for (std::size_t i = 0; i < both.size(); ++i) {
-    const double sum = (i < only_a.size() ? only_a[i].area_mm2 : 0) +
-                       (i < only_b.size() ? only_b[i].area_mm2 : 0);
+    const double sum =
+        (i < only_a.size() ? only_a[i].area_mm2 : 0) + (i < only_b.size() ? only_b[i].area_mm2 : 0);
     EXPECT_NEAR(both[i].area_mm2, sum, 1e-9);
   }
   const ThreadLimit one(1);

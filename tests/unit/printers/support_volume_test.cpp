@@ -137,7 +137,8 @@ TEST(SupportVolume, ScalesWithTheCubeOfSizeAndIgnoresPlace) {
     pose.translate(by);
     pose.rotate(Eigen::AngleAxisd(radians(turn), Vec3::UnitZ()));
     Mesh larger = transformed(model, pose);
-    for (const auto vertex : larger.vertices()) larger.set_point(vertex, larger.point(vertex) * scale);
+    for (const auto vertex : larger.vertices())
+      larger.set_point(vertex, larger.point(vertex) * scale);
     const double expected = coarse_support({model}, 1 << 14) * scale * scale * scale;
     RC_ASSERT(std::abs(coarse_support({larger}, 1 << 14) - expected) <= 5e-3 * expected);
   });
@@ -150,7 +151,8 @@ TEST(SupportVolume, PartsApartAddUp) {
     const int count = *rc::gen::inRange(1, 6);
     for (int i = 0; i < count; ++i) {
       const double z = *rc::gen::inRange(0, 30);
-      parts.push_back(shapes::moved(closed_mesh(fixtures::sphere(8, 3)), Vec3(20 * i, 7 * i, z + 8)));
+      parts.push_back(
+          shapes::moved(closed_mesh(fixtures::sphere(8, 3)), Vec3(20 * i, 7 * i, z + 8)));
       sum += coarse_support({parts.back()}, 1 << 12);
     }
     RC_ASSERT(std::abs(coarse_support(parts, 1 << 14) - sum) <= 2e-2 * sum);
