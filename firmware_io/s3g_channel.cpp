@@ -45,9 +45,15 @@ void Channel::notice_unexpected() {
       heard_too_much_ = true;
 }
 
+void Channel::hear_strays() {
+  do {
+    notice_unexpected();
+  } while (listen(0));
+}
+
 Channel::Outcome Channel::exchange(std::string_view payload, const Expected& expected,
                                    std::string& reply_payload) {
-  while (listen(0)) notice_unexpected();
+  hear_strays();
   write_all(port_, packet(payload));
   const double sent_at = now_s();
   while (true) {

@@ -43,6 +43,9 @@ class Channel {
   // Sends an action once. Throws Error{kIo} for answers that end a print.
   Verdict try_action(std::string_view payload);
 
+  // Takes what has come without being asked for.
+  void hear_strays();
+
   // True when an answer came that nothing was waiting for: a packet may have been taken twice.
   bool heard_too_much() const { return heard_too_much_; }
   void forget_too_much() { heard_too_much_ = false; }

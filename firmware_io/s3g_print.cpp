@@ -94,6 +94,7 @@ void Print::send(std::size_t index) {
   while (true) {
     obey();
     if (channel_.now_s() - watched_at_s_ >= kWatch_s) watch();
+    channel_.hear_strays();
     if (channel_.heard_too_much()) check_nothing_taken_twice();
     switch (channel_.try_action(action)) {
       case Verdict::kAccepted:
@@ -146,7 +147,8 @@ bool Print::was_taken(std::size_t index) {
   const std::uint8_t code = code_of((*actions_)[index]);
   const Statistics statistics = drained_statistics();
   if (code == kBuildStart) return statistics.state == BuildState::kRunning;
-  if (started_ && !ended_) {
+  // With an answer too many besides, the count proves nothing.
+  if (started_ && !ended_ && !channel_.heard_too_much()) {
     if (code == kBuildEnd && statistics.state == BuildState::kFinished) return true;
     if (statistics.actions == after_start_) return false;
     if (statistics.actions == after_start_ + 1) return true;

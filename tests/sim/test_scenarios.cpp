@@ -1,0 +1,336 @@
+// What machines do in the middle of a print, each trap that real firmware was seen to set, in
+// simulated time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "firmware_io/gcode_link.h"
+#include "firmware_io/s3g_link.h"
+#include "firmware_io/simulated/marlin.h"
+#include "firmware_io/simulated/replicator.h"
+#include "sim/faulty_port.h"
+#include "sim/programs.h"
+
+namespace packmerger::test {
+namespace {
+
+using simulated::Marlin;
+using simulated::MarlinTraits;
+using simulated::Pace;
+using simulated::Replicator;
+using ::testing::HasSubstr;
+
+StreamOptions options() {
+  StreamOptions options;
+  options.boot_wait_s = 0.1;
+  options.safe_gcode = "M104 S0\nM140 S0\n";
+  options.build_name = "scenario";
+  return options;
+}
+
+std::optional<Error> print(FaultyPort& port, bool gcode, const std::string& program,
+                           PrintControl& control, const PrintListener& listener = {}) {
+  try {
+    if (gcode)
+      print_gcode(port, program, options(), listener, control);
+    else
+      print_x3g(port, program, options(), listener, control);
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+std::size_t count(const std::vector<std::string>& list, const std::string& text) {
+  return static_cast<std::size_t>(std::count(list.begin(), list.end(), text));
+}
+
+TEST(Marlin, PrintsAndProvesIt) {
+  Marlin firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  std::vector<PrintState> states;
+  const auto failure =
+      print(port, true, joined(gcode_program(30)), control, [&](const PrintReport& report) {
+        if (states.empty() || states.back() != report.state) states.push_back(report.state);
+      });
+  EXPECT_FALSE(failure) << failure->what();
+  const std::vector<PrintState> expected = {PrintState::kConnecting, PrintState::kPrinting,
+                                            PrintState::kHeating, PrintState::kPrinting,
+                                            PrintState::kDone};
+  EXPECT_EQ(states, expected);
+  std::vector<std::string> executed = {"M115", "M27", "M110 N0"};
+  for (const std::string& line : gcode_program(30)) executed.push_back(line);
+  executed.insert(executed.end(), {"M400", "M114"});
+  EXPECT_EQ(port.executed(), executed);
+}
+
+// Once the machine has halted or was reset, not a byte may follow.
+void expect_silence_after(const std::function<void(Marlin&)>& event, const std::string& cause) {
+  Marlin firmware(Pace{1, true});
+  FaultyPort port(firmware);
+  std::size_t sent_before = 0;
+  port.on_step = [&](std::size_t written) {
+    if (written != 40 || sent_before != 0) return;
+    sent_before = port.sent.size();
+    event(firmware);
+  };
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(60)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kIo);
+  EXPECT_THAT(failure->what(), HasSubstr(cause));
+  // The line that was on its way when it happened is the last.
+  EXPECT_LT(port.sent.size(), sent_before + 96) << port.sent.substr(sent_before);
+  EXPECT_EQ(port.sent.find("M104 S0\n"), std::string::npos);
+}
+
+TEST(Marlin, ResetEndsThePrint) {
+  expect_silence_after([](Marlin& marlin) { marlin.reset(); }, "reset");
+}
+
+TEST(Marlin, FailedHeaterEndsThePrint) {
+  expect_silence_after([](Marlin& marlin) { marlin.fail_heater(); }, "Thermal Runaway");
+}
+
+TEST(Marlin, CancelWhileHeatingActsWithinASecond) {
+  Marlin firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  double asked_at_s = 0;
+  port.on_step = [&](std::size_t) {
+    if (asked_at_s == 0 && port.now_s() > 5) {
+      asked_at_s = port.now_s();
+      control.cancel();
+    }
+  };
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+  EXPECT_LT(port.now_s() - asked_at_s, 1);
+  const auto& executed = port.executed();
+  EXPECT_EQ(count(executed, "M104 S0"), 1u);
+  EXPECT_EQ(count(executed, "M140 S0"), 1u);
+  EXPECT_EQ(count(executed, "G28 W"), 0u);
+}
+
+TEST(Marlin, AsksItsUserAndGoesOn) {
+  Marlin firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  std::string question;
+  const auto failure =
+      print(port, true, "G28\nM0 Change tool\nM84\n", control, [&](const PrintReport& report) {
+        if (report.state != PrintState::kWaiting) return;
+        question = report.text;
+        control.answer(0);
+      });
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(question, "Change tool");
+  EXPECT_EQ(count(port.executed(), "M84"), 1u);
+}
+
+TEST(Marlin, PausesAreRefusedWhereNobodyCanBeAsked) {
+  MarlinTraits traits;
+  traits.prompts = false;
+  Marlin firmware(Pace{1, false}, traits);
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, "G28\nM0\n", control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kUnavailable);
+  EXPECT_EQ(count(port.executed(), "G28"), 0u);
+}
+
+// A firmware of a few words, for what the simulated ones never do.
+class Parrot : public simulated::Firmware {
+ public:
+  explicit Parrot(std::function<std::string(const std::string&)> answer)
+      : answer_(std::move(answer)) {}
+  void receive(std::string_view bytes, double) override {
+    for (char c : bytes) {
+      if (c != '\n') {
+        line_ += c;
+        continue;
+      }
+      if (!line_.empty()) {
+        output_ += answer_(line_);
+        executed_.push_back(line_);
+      }
+      line_.clear();
+    }
+  }
+  void advance(double) override {}
+  double next_event_s() const override { return simulated::kNever; }
+
+ private:
+  std::function<std::string(const std::string&)> answer_;
+  std::string line_;
+};
+
+std::string polite(const std::string& line) {
+  return line == "M115" ? "FIRMWARE_NAME:Parrot\nok\n" : "ok\n";
+}
+
+TEST(Marlin, TenRequestsForOneLineEndThePrint) {
+  Parrot firmware([](const std::string& line) {
+    return line.rfind("N5 ", 0) == 0 ? "Resend: 5\nok\n" : polite(line);
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("asked ten times for line 5"));
+  EXPECT_EQ(port.executed().back(), "M140 S0") << "the safe text is still sent";
+}
+
+// Some firmwares send no ok behind a Resend.
+TEST(Marlin, ResendWithoutOk) {
+  bool asked = false;
+  Parrot firmware([&](const std::string& line) {
+    if (line.rfind("N5 ", 0) == 0 && !std::exchange(asked, true)) return std::string("Resend:5\n");
+    return line.find("M114") == std::string::npos ? polite(line) : "X:0 Y:0 Z:0 E:0\nok\n";
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  EXPECT_FALSE(failure) << failure->what();
+}
+
+TEST(Marlin, SilenceEndsThePrintInTime) {
+  Parrot firmware([](const std::string& line) {
+    return line.rfind("N9 ", 0) == 0 || line == "M105" ? std::string() : polite(line);
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("has not answered line 9"));
+  EXPECT_LT(port.now_s(), 35);
+}
+
+TEST(Marlin, OwnCardIsBusy) {
+  Parrot firmware([](const std::string& line) {
+    return line == "M27" ? std::string("SD printing byte 12/3000\nok\n") : polite(line);
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, "G28\n", control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kBusy);
+}
+
+TEST(Links, NobodyThere) {
+  for (const bool gcode : {true, false}) {
+    Parrot firmware([](const std::string&) { return std::string(); });
+    FaultyPort port(firmware);
+    PrintControl control;
+    const auto failure = print(port, gcode, gcode ? "G28\n" : x3g_program(2).bytes, control);
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->fault(), Fault::kUnavailable);
+  }
+}
+
+TEST(Links, TheOtherProtocolIsTheWrongPrinter) {
+  Marlin marlin(Pace{1, true});
+  FaultyPort marlin_port(marlin);
+  PrintControl control;
+  const auto x3g_failure = print(marlin_port, false, x3g_program(2).bytes, control);
+  ASSERT_TRUE(x3g_failure);
+  EXPECT_EQ(x3g_failure->fault(), Fault::kUnavailable);
+
+  Replicator replicator(Pace{1, true});
+  FaultyPort replicator_port(replicator);
+  const auto gcode_failure = print(replicator_port, true, "G28\n", control);
+  ASSERT_TRUE(gcode_failure);
+  EXPECT_EQ(gcode_failure->fault(), Fault::kUnavailable);
+  EXPECT_TRUE(replicator_port.executed().empty());
+}
+
+TEST(Replicator, FullBufferIsWaitedOut) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  const X3gProgram program = x3g_program(100);
+  bool heated = false;
+  const auto failure = print(port, false, program.bytes, control, [&](const PrintReport& report) {
+    heated = heated || report.state == PrintState::kHeating;
+  });
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(port.executed(), program.actions);
+  EXPECT_TRUE(heated);
+  EXPECT_GT(port.now_s(), 60) << "it has to heat up";
+}
+
+TEST(Replicator, StartAndEndAreAdded) {
+  Replicator firmware(Pace{1, true});
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, false, std::string("\x97\x01\x86\0", 4), control);
+  EXPECT_FALSE(failure) << failure->what();
+  const std::vector<std::string> expected = {"99000000007363656e6172696f00", "9701", "8600",
+                                             "9a00"};
+  EXPECT_EQ(port.executed(), expected);
+}
+
+void expect_cause(const std::function<void(Replicator&)>& event, const std::string& cause) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  bool done = false;
+  port.on_step = [&](std::size_t) {
+    if (port.now_s() > 20 && !std::exchange(done, true)) event(firmware);
+  };
+  PrintControl control;
+  const auto failure = print(port, false, x3g_program(100).bytes, control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kIo);
+  EXPECT_THAT(failure->what(), HasSubstr(cause));
+  EXPECT_LT(port.now_s(), 25);
+}
+
+TEST(Replicator, CancelledAtItsPanel) {
+  expect_cause([](Replicator& machine) { machine.cancel_at_panel(); }, "cancelled at the printer");
+}
+
+TEST(Replicator, Overheated) {
+  expect_cause([](Replicator& machine) { machine.overheat(); }, "shut its heaters down");
+}
+
+TEST(Replicator, PowerCut) {
+  expect_cause([](Replicator& machine) { machine.power_cycle(); }, "reset");
+}
+
+TEST(Replicator, CancelWhileHeatingActsWithinASecond) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  double asked_at_s = 0;
+  port.on_step = [&](std::size_t) {
+    if (asked_at_s == 0 && port.now_s() > 20) {
+      asked_at_s = port.now_s();
+      control.cancel();
+    }
+  };
+  const auto failure = print(port, false, x3g_program(100).bytes, control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+  EXPECT_LT(port.now_s() - asked_at_s, 1);
+  EXPECT_EQ(port.executed().back(), "abort");
+}
+
+TEST(Replicator, ABuildOfSomeoneElseIsNotTouched) {
+  Replicator firmware(Pace{1, true});
+  firmware.receive(std::string("\xD5\x07\x99\0\0\0\0\x61\0\x3E", 10), 0);  // build start "a"
+  firmware.take_output();
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, false, x3g_program(3).bytes, control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kBusy);
+  EXPECT_EQ(port.executed(), std::vector<std::string>{"99000000006100"});
+}
+
+}  // namespace
+}  // namespace packmerger::test

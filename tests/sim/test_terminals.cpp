@@ -1,0 +1,220 @@
+// Whole prints over real pseudo-terminals: the links on one side, a simulated printer on the other.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <future>
+#include <optional>
+#include <sstream>
+#include <thread>
+
+#include "base/files.h"
+#include "base/process.h"
+#include "firmware_io/gcode_link.h"
+#include "firmware_io/s3g_link.h"
+#include "firmware_io/simulated/simulator.h"
+#include "sim/programs.h"
+
+namespace packmerger::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+enum class Machine { kReplicator, kMarlin };
+
+// A simulated printer on a thread of its own; ends with the object, or before by unplug().
+class Printer {
+ public:
+  Printer(Machine machine, double speed) {
+    options_.speed = speed;
+    options_.record = folder_.path() / "record.txt";
+    std::promise<std::string> path;
+    auto ready = path.get_future();
+    thread_ = std::thread([this, machine, promise = std::move(path)]() mutable {
+      const auto listening = [&](const std::string& at) { promise.set_value(at); };
+      if (machine == Machine::kReplicator)
+        run_simulated_replicator(options_, listening, stop_);
+      else
+        run_simulated_marlin(options_, listening, stop_);
+    });
+    path_ = ready.get();
+  }
+  Printer(const Printer&) = delete;
+  Printer& operator=(const Printer&) = delete;
+  ~Printer() { unplug(); }
+
+  void unplug() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  const std::string& path() const { return path_; }
+  const fs::path& folder() const { return folder_.path(); }
+
+  std::vector<std::string> record() const {
+    std::ifstream file(options_.record);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+  }
+
+ private:
+  TemporaryFolder folder_;
+  SimulatorOptions options_;
+  std::atomic<bool> stop_{false};
+  std::string path_;
+  std::thread thread_;
+};
+
+StreamOptions options() {
+  StreamOptions options;
+  options.boot_wait_s = 0.05;
+  options.safe_gcode = "M104 S0\nM140 S0\n";
+  return options;
+}
+
+std::optional<Error> print(Machine machine, const std::string& address, const std::string& program,
+                           PrintControl& control, const PrintListener& listener = {}) {
+  try {
+    const auto port = open_port(address, 115200);
+    if (machine == Machine::kReplicator)
+      print_x3g(*port, program, options(), listener, control);
+    else
+      print_gcode(*port, program, options(), listener, control);
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+std::string program_of(Machine machine, std::size_t moves) {
+  return machine == Machine::kReplicator ? x3g_program(moves).bytes : joined(gcode_program(moves));
+}
+
+TEST(Terminals, ReplicatorExecutesTheProgram) {
+  Printer printer(Machine::kReplicator, 0);
+  PrintControl control;
+  const auto failure =
+      print(Machine::kReplicator, printer.path(), program_of(Machine::kReplicator, 5000), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(printer.record(), x3g_program(5000).actions);
+}
+
+TEST(Terminals, MarlinExecutesTheProgram) {
+  Printer printer(Machine::kMarlin, 0);
+  PrintControl control;
+  const auto failure =
+      print(Machine::kMarlin, printer.path(), program_of(Machine::kMarlin, 5000), control);
+  EXPECT_FALSE(failure) << failure->what();
+  std::vector<std::string> expected = {"M115", "M27", "M110 N0"};
+  for (const std::string& line : gcode_program(5000)) expected.push_back(line);
+  expected.insert(expected.end(), {"M400", "M114"});
+  EXPECT_EQ(printer.record(), expected);
+}
+
+TEST(Terminals, PrintsOneJobAfterTheOther) {
+  Printer printer(Machine::kReplicator, 0);
+  PrintControl control;
+  for (int i = 0; i < 3; ++i)
+    EXPECT_FALSE(print(Machine::kReplicator, printer.path(), x3g_program(5).bytes, control));
+}
+
+TEST(Terminals, SecondOpenerIsRefused) {
+  Printer printer(Machine::kMarlin, 0);
+  const fs::path link = printer.folder() / "printer";
+  fs::create_symlink(printer.path(), link);
+  const auto port = open_port(link.string(), 115200);
+  try {
+    open_port(printer.path(), 115200);
+    FAIL() << "was opened twice";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kBusy);
+  }
+}
+
+TEST(Terminals, WhatIsNoPort) {
+  for (const char* address : {"/dev/no-such-printer", "/dev/null", "/etc/hostname", "/tmp"}) {
+    try {
+      open_port(address, 115200);
+      FAIL() << address;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::kUnavailable) << address;
+      EXPECT_FALSE(error.hint().empty());
+    }
+  }
+}
+
+class EachMachine : public ::testing::TestWithParam<Machine> {};
+
+TEST_P(EachMachine, UnpluggedPrinterFailsSoon) {
+  Printer printer(GetParam(), 10);
+  PrintControl control;
+  auto done = std::async(std::launch::async, [&] {
+    return print(GetParam(), printer.path(), program_of(GetParam(), 2000), control);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  const auto begin = Clock::now();
+  printer.unplug();
+  const auto failure = done.get();
+  EXPECT_LT(seconds_since(begin), 5);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kIo);
+  EXPECT_THAT(failure->what(), HasSubstr("is gone"));
+}
+
+// From another thread, while the machine heats.
+TEST_P(EachMachine, CancelActsWithinASecond) {
+  Printer printer(GetParam(), 1);
+  PrintControl control;
+  auto done = std::async(std::launch::async, [&] {
+    return print(GetParam(), printer.path(), program_of(GetParam(), 2000), control);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  const auto begin = Clock::now();
+  control.cancel();
+  const auto failure = done.get();
+  EXPECT_LT(seconds_since(begin), 1.5) << "a second, and some for a busy machine";
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted) << failure->what();
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, EachMachine,
+                         ::testing::Values(Machine::kReplicator, Machine::kMarlin));
+
+// A client that nobody here wrote.
+TEST(Terminals, GpxPrintsToTheReplicator) {
+  Printer printer(Machine::kReplicator, 0);
+  const fs::path gcode = printer.folder() / "job.gcode";
+  write_file_whole(gcode,
+                   "G21\nG90\nG162 X Y F2500\nG161 Z F1100\nG92 X0 Y0 Z0 A0 B0\n"
+                   "G1 X10 Y10 Z0.2 F3000\nG1 X20 Y10 E1 F1800\nG4 P100\nM18\n");
+  const std::vector<std::string> common = {"gpx", "-I", "-m", "r1d"};
+  std::vector<std::string> stream = common;
+  stream.insert(stream.end(), {"-s", "-W", "0", gcode.string(), printer.path()});
+  std::vector<std::string> convert = common;
+  const fs::path x3g = printer.folder() / "job.x3g";
+  convert.insert(convert.end(), {gcode.string(), x3g.string()});
+  ASSERT_TRUE(run_process({.argv = stream}, 30, {}).status.ok());
+  ASSERT_TRUE(run_process({.argv = convert}, 30, {}).status.ok());
+
+  std::string streamed;
+  for (const std::string& line : printer.record()) streamed += line;
+  const std::string converted = hex(read_file(x3g, 1 << 20));
+  ASSERT_FALSE(converted.empty());
+  // The two name the build after their outputs; behind that they are the same.
+  const std::string home = "8403";
+  ASSERT_NE(streamed.find(home), std::string::npos) << streamed;
+  EXPECT_EQ(streamed.substr(streamed.find(home)), converted.substr(converted.find(home)));
+}
+
+}  // namespace
+}  // namespace packmerger::test
