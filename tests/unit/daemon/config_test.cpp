@@ -1,0 +1,148 @@
+#include "daemon/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace packmerger {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ConfigTest : public testing::Test {
+ protected:
+  fs::path write(const std::string& text) {
+    const fs::path file = folder_.path() / "d.toml";
+    std::ofstream(file) << text;
+    return file;
+  }
+
+  std::string refusal(const std::string& text) {
+    try {
+      read_config(write(text));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::kBadProfile) << error.what();
+      EXPECT_FALSE(error.hint().empty());
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  TemporaryFolder folder_;
+};
+
+const char* const kPrinter = "[printer.m]\nprofile = \"marlin\"\nport = \"/dev/ttyUSB0\"\n";
+
+TEST_F(ConfigTest, ReadsEveryKey) {
+  const DaemonConfig config = read_config(write(R"(
+state = "state"
+socket = "/run/x.sock"
+socket_mode = "0660"
+retry_s = 5
+[prepare]
+program = "./fake"
+time_s = 60
+memory_bytes = 1073741824
+nice = 5
+seed = 4
+budget_s = 1.5
+[watch]
+rescan_s = 2
+still_s = 0.5
+give_up_s = 10
+[printer.m]
+profile = "marlin"
+port = "/dev/ttyUSB0"
+folder = "drop"
+approve = "auto"
+simulated = true
+units = "in"
+size_mm = 60
+variant = "cheapest"
+split = false
+hollow = false
+set = ["gap_mm=0", "wall_mm=2"]
+[printer.o]
+profile = "objet30"
+handoff_folder = "/mnt/share"
+)"));
+  EXPECT_EQ(config.state, folder_.path() / "state");
+  EXPECT_EQ(config.socket, "/run/x.sock");
+  EXPECT_EQ(config.socket_mode, 0660U);
+  EXPECT_EQ(config.prepare.program, folder_.path() / "fake");
+  EXPECT_EQ(config.prepare.memory_bytes, 1073741824U);
+  EXPECT_EQ(config.prepare.budget_s, 1.5);
+  EXPECT_EQ(config.watch.give_up_s, 10);
+  ASSERT_EQ(config.printers.size(), 2U);
+  const PrinterConfig& marlin = *config.printer("m");
+  EXPECT_EQ(marlin.folder, folder_.path() / "drop");
+  EXPECT_THAT(marlin.prepare_options,
+              ElementsAre("--units", "in", "--size", "60", "--variant", "cheapest", "--no-split",
+                          "--no-hollow", "--set", "gap_mm=0", "--set", "wall_mm=2"));
+  EXPECT_FALSE(marlin.has_bed());
+  EXPECT_TRUE(config.printer("o")->hands_over());
+  EXPECT_EQ(config.printer("o")->folder, config.state / "folders/o");
+  EXPECT_EQ(config.printer("x"), nullptr);
+}
+
+TEST_F(ConfigTest, TellsFileLineAndWhatWasExpected) {
+  const std::string printer = kPrinter;
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"state = 3\n" + printer, "d.toml:1: state: expected the path of a folder"},
+      {"\nretry_s = \"5\"\n" + printer, "d.toml:2: retry_s: expected a number from 0.1"},
+      {"retry_s = nan\n" + printer, "d.toml:1: retry_s: expected a number"},
+      {"stat = \"x\"\n" + printer, "d.toml:1: unknown key stat"},
+      {"prepare = 1\n" + printer, "d.toml:1: expected a table [prepare]"},
+      {"[prepare]\ntime_s = 0\n" + printer, "d.toml:2: prepare.time_s: expected a number from 1"},
+      {"[prepare]\nnice = 2.5\n" + printer, "d.toml:2: prepare.nice: expected an integer"},
+      {"[watch]\nfoo = 1\n" + printer, "d.toml:2: unknown key watch.foo"},
+      {printer + "approve = \"yes\"\n",
+       "d.toml:4: printer.m.approve: expected \"auto\" or \"ask\""},
+      {printer + "simulated = \"true\"\n", "d.toml:4: printer.m.simulated: expected true or false"},
+      {printer + "set = [1]\n", "d.toml:4: printer.m.set: expected a list of texts"},
+      {printer + "set = [\"nonsense=1\"]\n", "d.toml:1: [printer.m]: "},
+      {printer + "size_mm = 2\nscale = 3\n", "cannot have both size_mm and scale"},
+      {printer + "handoff_folder = \"/x\"\n", "cannot have a handoff_folder"},
+      {"[printer.m]\nprofile = \"marlin\"\n", "d.toml:1: [printer.m] needs the key port"},
+      {"[printer.m]\nport = \"/dev/x\"\n", "d.toml:1: [printer.m] needs the key profile"},
+      {"[printer.m]\nprofile = \"nosuch\"\nport = \"/dev/x\"\n", "d.toml:1: [printer.m]: "},
+      {"[printer.o]\nprofile = \"objet30\"\n", "needs the key handoff_folder"},
+      {"[printer.\"a/b\"]\n", "expected a name of letters"},
+      {"[printer.\"..\"]\n", "expected a name of letters"},
+      {printer + "[printer.n]\nprofile = \"marlin\"\nport = \"/dev/ttyUSB0\"\n",
+       "d.toml:4: [printer.n] has the port of another printer"},
+      {"", "needs at least one table [printer.NAME]"},
+      {"socket = \"/" + std::string(200, 'x') + "\"\n" + printer, "d.toml:1: socket: expected"},
+      {"[printer.m\n", "d.toml:1: "},
+  };
+  for (const auto& [text, expected] : cases)
+    EXPECT_THAT(refusal(text), HasSubstr(expected)) << text;
+}
+
+TEST_F(ConfigTest, AMissingFileIsNoInput) {
+  try {
+    read_config(folder_.path() / "none.toml");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kNoInput);
+  }
+}
+
+TEST_F(ConfigTest, TheManualNamesEveryKey) {
+  const char* source = std::getenv("PACKMERGER_SOURCE");
+  if (source == nullptr) GTEST_SKIP() << "PACKMERGER_SOURCE is not set; run it with ctest";
+  std::ifstream file(fs::path(source) / "docs/DAEMON.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  for (const DaemonKey& key : daemon_keys())
+    EXPECT_THAT(text.str(), HasSubstr("| `" + key.name + "` | " + key.expected)) << key.name;
+}
+
+}  // namespace
+}  // namespace packmerger

@@ -1,0 +1,129 @@
+#include "daemon/job_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "daemon/send.h"
+
+namespace packmerger {
+namespace {
+
+void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+const char* const kReport = R"({"version": 1,
+  "inputs": [{"file": "bunny.stl", "sha256": "ab", "scale": 1}],
+  "parts": [{"id": 1, "tray": 1}, {"id": 2, "tray": 2}],
+  "estimates": {"packed": {"fits": true, "cost": 1.5}}})";
+
+Fault fault_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.hint().empty());
+    return error.fault();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return Fault::kInternal;
+}
+
+// A job folder of two trays for the given profile.
+void make_job(const fs::path& folder, const std::string& profile) {
+  fs::create_directories(folder);
+  write(folder / "job.json", kReport);
+  write(folder / "profile.toml", profile_toml(read_profile(profile)));
+  write(folder / "preview.png", "picture");
+  for (const char* name : {"tray.stl", "tray-2.stl", "program.gcode", "program-2.gcode"})
+    write(folder / name, std::string("G28 ; ") + name + "\n");
+}
+
+TEST(JobFolder, ReadsTheReport) {
+  const TemporaryFolder folder;
+  write(folder.path() / "job.json", kReport);
+  const PreparedJob job = read_prepared(folder.path());
+  EXPECT_EQ(job.trays, 2);
+  EXPECT_EQ(job.title, "bunny");
+  EXPECT_EQ(job.input_sha256, "ab");
+  EXPECT_TRUE(pays(job.estimates, "packed"));
+}
+
+TEST(JobFolder, RefusesWhatIsNoReport) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(fault_of([&] { read_prepared(folder.path()); }), Fault::kNoInput);
+  for (const char* text :
+       {"", "[]", "{", "{\"version\": 2}", "{\"version\": 1}",
+        R"({"version": 1, "inputs": [], "parts": [], "estimates": {}})",
+        R"({"version": 1, "inputs": [{"file": 1, "sha256": "x"}], "parts": [], "estimates": {}})",
+        R"({"version": 1, "inputs": [{"file": "a", "sha256": "x"}], "parts": [{"tray": 99999999}],
+            "estimates": {}})"}) {
+    write(folder.path() / "job.json", text);
+    EXPECT_EQ(fault_of([&] { read_prepared(folder.path()); }), Fault::kBadInput) << text;
+  }
+}
+
+TEST(Pays, OnlyWhenEveryOtherWayThatFitsIsDearer) {
+  const std::string cheap =
+      R"({"packed": {"fits": true, "cost": 5}, "hollow": {"fits": true, "cost": 6},
+    "solid": {"fits": false, "cost": null}, "as_is": {"fits": false, "cost": null}})";
+  EXPECT_TRUE(pays(cheap, "packed"));
+  EXPECT_FALSE(pays(cheap, "hollow"));
+  EXPECT_FALSE(pays(cheap, "solid")) << "it does not fit";
+  EXPECT_TRUE(pays(cheap, "cheapest"));
+  EXPECT_FALSE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": true, "cost": 5}})",
+                    "packed"));
+  EXPECT_TRUE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": false}})", "packed"));
+  for (const char* text : {"", "[]", "{}", R"({"packed": null})", R"({"packed": {"fits": true}})"})
+    EXPECT_FALSE(pays(text, "packed")) << text;
+}
+
+TEST(HandOver, PutsTheDocumentReportAndPictureWhole) {
+  const TemporaryFolder folder;
+  make_job(folder.path() / "job", "objet30");
+  const fs::path to = folder.path() / "share";
+  EXPECT_EQ(fault_of([&] { hand_over(folder.path() / "job", to, "bunny-1"); }),
+            Fault::kCannotWrite);
+  fs::create_directory(to);
+  const fs::path target = hand_over(folder.path() / "job", to, "bunny-1");
+  EXPECT_EQ(target, to / "bunny-1");
+  for (const char* name : {"job.json", "preview.png", "tray.stl", "tray-2.stl"})
+    EXPECT_EQ(read_file(target / name, 9999), read_file(folder.path() / "job" / name, 9999));
+  EXPECT_EQ(std::distance(fs::directory_iterator(target), {}), 4);
+  EXPECT_EQ(std::distance(fs::directory_iterator(to), {}), 1) << "nothing temporary is left";
+  EXPECT_EQ(hand_over(folder.path() / "job", to, "bunny-1"), target) << "the same job again";
+  write(folder.path() / "job/job.json", std::string(kReport) + " ");
+  EXPECT_EQ(fault_of([&] { hand_over(folder.path() / "job", to, "bunny-1"); }), Fault::kCannotWrite)
+      << "another job of that name";
+}
+
+TEST(HandOver, AFailureLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  make_job(folder.path() / "job", "objet30");
+  fs::remove(folder.path() / "job/tray-2.stl");
+  fs::create_directory(folder.path() / "share");
+  EXPECT_ANY_THROW(hand_over(folder.path() / "job", folder.path() / "share", "x"));
+  EXPECT_TRUE(fs::is_empty(folder.path() / "share"));
+}
+
+TEST(SendTray, RefusesBeforeItOpensAnything) {
+  const TemporaryFolder folder;
+  PrintControl control;
+  const auto send = [&](const fs::path& job, int tray, const std::string& port) {
+    return fault_of([&] { send_tray(job, tray, port, {}, control); });
+  };
+  make_job(folder.path() / "wire", "marlin");
+  make_job(folder.path() / "folder", "uprint");
+  const std::string none = (folder.path() / "no-port").string();
+  EXPECT_EQ(send(folder.path() / "nothing", 1, none), Fault::kNoInput);
+  EXPECT_EQ(send(folder.path() / "folder", 1, none), Fault::kUsage);
+  EXPECT_EQ(send(folder.path() / "wire", 3, none), Fault::kNoInput);
+  EXPECT_EQ(send(folder.path() / "wire", 0, none), Fault::kNoInput);
+  EXPECT_EQ(send(folder.path() / "wire", 2, none), Fault::kUnavailable);
+  write(folder.path() / "wire/program.gcode", "G1 X10\xFF\n");
+  EXPECT_EQ(send(folder.path() / "wire", 1, none), Fault::kBadInput);
+  EXPECT_EQ(fault_of([&] { hand_over(folder.path() / "wire", folder.path(), "x"); }),
+            Fault::kUsage);
+}
+
+}  // namespace
+}  // namespace packmerger

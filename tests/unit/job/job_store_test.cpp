@@ -1,0 +1,239 @@
+#include "job/job_store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <map>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace packmerger {
+namespace {
+
+const std::vector<JobState> kStates = {
+    JobState::kClaiming, JobState::kReceived, JobState::kPreparing, JobState::kReady,
+    JobState::kApproved, JobState::kSending,  JobState::kDone,      JobState::kHandedOver,
+    JobState::kFailed,   JobState::kCancelled};
+
+JobRecord sample(JobState state = JobState::kClaiming) {
+  JobRecord job;
+  job.printer = "replicator";
+  job.name = "b\xC3\xBCnny'; DROP TABLE job; --.stl";
+  job.origin = "/folders/x.stl";
+  job.state = state;
+  job.received_s = 1e9;
+  return job;
+}
+
+Fault fault_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_FALSE(error.hint().empty());
+    return error.fault();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return Fault::kInternal;
+}
+
+TEST(JobState, NamesAreUniqueAndReadBack) {
+  for (const JobState state : kStates) EXPECT_EQ(state_named(state_name(state)), state);
+  EXPECT_FALSE(state_named("printing"));
+}
+
+TEST(JobState, EveryJobCanEndAndNoneComesBack) {
+  for (const JobState from : kStates) {
+    EXPECT_EQ(may_follow(from, JobState::kFailed), !has_ended(from));
+    EXPECT_EQ(may_follow(from, JobState::kCancelled), !has_ended(from));
+    if (has_ended(from))
+      for (const JobState to : kStates) EXPECT_FALSE(may_follow(from, to));
+  }
+  EXPECT_FALSE(may_follow(JobState::kReady, JobState::kSending)) << "never without approval";
+  EXPECT_FALSE(may_follow(JobState::kReceived, JobState::kApproved));
+}
+
+TEST(JobStore, KeepsEveryFieldAcrossReopening) {
+  const TemporaryFolder folder;
+  JobRecord job = sample();
+  {
+    JobStore store(folder.path() / "jobs.sqlite");
+    job = store.add(job);
+    job.input = "/in";
+    job.by_copy = true;
+    job.sha256 = std::string(64, 'a');
+    job.state = JobState::kReceived;
+    job.held = true;
+    job.attempt = 3;
+    job.folder = "/job";
+    job.trays = 4;
+    job.next_tray = 2;
+    job.pays = true;
+    job.estimates = R"({"packed":null})";
+    job.reason = std::string("a\0b", 3);
+    job.hint = "hint";
+    job.filed = "/done/x";
+    job.again_of = 7;
+    job.sending_s = 2.5;
+    store.save(job, "note");
+  }
+  JobStore store(folder.path() / "jobs.sqlite");
+  const JobRecord back = store.find(job.id).value();
+  EXPECT_EQ(back.name, job.name);
+  EXPECT_EQ(back.state, JobState::kReceived);
+  EXPECT_EQ(back.reason, job.reason);
+  EXPECT_TRUE(back.held && back.by_copy && back.pays && !back.filing_done);
+  EXPECT_EQ(back.attempt, 3);
+  EXPECT_EQ(back.trays, 4);
+  EXPECT_EQ(back.next_tray, 2);
+  EXPECT_EQ(back.again_of, 7);
+  EXPECT_EQ(back.estimates, job.estimates);
+  EXPECT_EQ(back.sending_s, 2.5);
+  const std::vector<JobEvent> history = store.history(job.id);
+  ASSERT_EQ(history.size(), 2U);
+  EXPECT_EQ(history.back().note, "note");
+}
+
+TEST(JobStore, AcceptsExactlyTheAllowedSteps) {
+  EXPECT_TRUE(rc::check("random walks over the states", [] {
+    const TemporaryFolder folder;
+    JobStore store(folder.path() / "jobs.sqlite");
+    JobRecord job = store.add(sample());
+    const auto steps = *rc::gen::container<std::vector<std::size_t>>(
+        12, rc::gen::inRange<std::size_t>(0, kStates.size()));
+    for (const std::size_t step : steps) {
+      JobRecord next = job;
+      next.state = kStates[step];
+      const bool stays = has_ended(job.state) && job.state == next.state;
+      const bool allowed = stays || may_follow(job.state, next.state);
+      try {
+        store.save(next);
+        RC_ASSERT(allowed);
+        job = next;
+      } catch (const Error&) {
+        RC_ASSERT(!allowed);
+      }
+      RC_ASSERT(store.find(job.id)->state == job.state);
+    }
+  }));
+}
+
+TEST(JobStore, IdsAreNeverUsedAgain) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  const std::int64_t first = store.add(sample()).id;
+  store.forget(first);
+  EXPECT_FALSE(store.find(first));
+  EXPECT_TRUE(store.history(first).empty());
+  EXPECT_GT(store.add(sample()).id, first);
+}
+
+TEST(JobStore, ForgetsOnlyWhatIsStillBeingClaimed) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  const JobRecord job = store.add(sample(JobState::kReceived));
+  store.forget(job.id);
+  EXPECT_TRUE(store.find(job.id));
+}
+
+TEST(JobStore, OpenJobsAreThoseWithSomethingLeftToDo) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  JobRecord job = store.add(sample(JobState::kReceived));
+  EXPECT_EQ(store.open_jobs().size(), 1U);
+  job.state = JobState::kFailed;
+  job.ended_s = 5;
+  store.save(job);
+  EXPECT_EQ(store.open_jobs().size(), 1U) << "its file is not filed yet";
+  job.filing_done = true;
+  store.save(job);
+  EXPECT_TRUE(store.open_jobs().empty());
+  EXPECT_EQ(store.newest(10).size(), 1U);
+}
+
+TEST(JobStore, RecognisesTheSameBytes) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  JobRecord first = sample();
+  first.sha256 = "abc";
+  first = store.add(first);
+  JobRecord second = store.add(first);
+  EXPECT_EQ(store.same_bytes(second), first.id);
+  JobRecord third = store.add(sample());
+  EXPECT_EQ(store.same_bytes(third), 0) << "an unknown hash equals nothing";
+}
+
+TEST(JobStore, JobAndBedAreWrittenInOneStep) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  EXPECT_FALSE(store.printer("replicator").bed_clear) << "an unknown bed is not clear";
+  store.save(PrinterRecord{"replicator", true, false});
+  JobRecord job = store.add(sample());
+  const PrinterRecord used{"replicator", false, false};
+  job.state = JobState::kSending;
+  EXPECT_EQ(fault_of([&] { store.save(job, "", &used); }), Fault::kInternal);
+  EXPECT_TRUE(store.printer("replicator").bed_clear) << "rolled back with the forbidden step";
+}
+
+TEST(JobStore, RefusesWhatIsNoDatabaseOrOneFromTheFuture) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "text") << std::string(5000, 'x');
+  EXPECT_EQ(fault_of([&] { JobStore(folder.path() / "text"); }), Fault::kIo);
+  EXPECT_EQ(fault_of([&] { JobStore(folder.path()); }), Fault::kCannotWrite);
+  { JobStore store(folder.path() / "new"); }
+  sqlite3* raw = nullptr;
+  ASSERT_EQ(sqlite3_open((folder.path() / "new").c_str(), &raw), SQLITE_OK);
+  sqlite3_exec(raw, "PRAGMA user_version = 99", nullptr, nullptr, nullptr);
+  sqlite3_close(raw);
+  EXPECT_EQ(fault_of([&] { JobStore(folder.path() / "new"); }), Fault::kIo);
+}
+
+// Walks jobs through their life and tells each step on the pipe once it is committed.
+[[noreturn]] void walk_jobs(const fs::path& file, int pipe) {
+  JobStore store(file);
+  for (;;) {
+    JobRecord job = store.add(sample());
+    for (const JobState state : {JobState::kClaiming, JobState::kReceived, JobState::kPreparing,
+                                 JobState::kReady, JobState::kApproved, JobState::kSending}) {
+      job.state = state;
+      const PrinterRecord bed{"replicator", state != JobState::kSending, false};
+      store.save(job, "step", &bed);
+      const std::int64_t told[2] = {job.id, static_cast<std::int64_t>(state)};
+      if (::write(pipe, told, sizeof told) != sizeof told) ::_exit(1);
+    }
+  }
+}
+
+TEST(JobStore, NothingThatWasToldIsLostWhenTheProcessIsKilled) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "jobs.sqlite";
+  for (int round = 0; round < 25; ++round) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const pid_t child = ::fork();
+    if (child == 0) walk_jobs(file, ends[1]);
+    ::close(ends[1]);
+    ::usleep(static_cast<useconds_t>(5000 + 7000 * (round % 6)));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    std::map<std::int64_t, std::int64_t> told;
+    std::int64_t step[2];
+    while (::read(ends[0], step, sizeof step) == sizeof step) told[step[0]] = step[1];
+    ::close(ends[0]);
+    JobStore store(file);
+    for (const auto& [id, state] : told) {
+      const JobRecord job = store.find(id).value();
+      const auto found = static_cast<std::int64_t>(job.state);
+      EXPECT_TRUE(found == state || found == state + 1) << id << ": " << state << " " << found;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace packmerger
