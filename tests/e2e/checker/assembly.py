@@ -169,7 +169,7 @@ def _check_surface(job, assembled, model, number, report):
         if bad.any():
             worst = int(np.flatnonzero(bad)[distance[bad].argmax()])
             wrong.append(f"part {part['id']}: {bad.sum()} of {len(distance)} points, "
-                         f"{distance[worst]:.3f} mm at {np.round(points[worst], 2).tolist()}")
+                         f"{distance[worst]:.4f} mm at {np.round(points[worst], 2).tolist()}")
     counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
     report.check(f"input {number}: the parts' outer surface lies on the model", not wrong,
                  first_few(wrong, 3) or f"{furthest:.5f} mm at most, {tolerance} mm allowed ({counts} points)")
@@ -189,7 +189,7 @@ def _check_coverage(assembled, model, model_tree, tolerance, number, report):
     figures = f"{distance[np.setdiff1d(np.arange(len(points)), off[inner])].max(initial=0):.5f} mm at most, {len(points)} points"
     if len(bad):
         worst = bad[distance[bad].argmax()]
-        figures = f"{len(bad)} of {len(points)} points off, {distance[worst]:.3f} mm at {np.round(points[worst], 2).tolist()}"
+        figures = f"{len(bad)} of {len(points)} points off, {distance[worst]:.4f} mm at {np.round(points[worst], 2).tolist()}"
     report.check(f"input {number}: the model's surface is covered by the parts", len(bad) == 0, figures)
 
 
