@@ -48,6 +48,7 @@ PlanOptions plan_options(const PlanArguments& arguments) {
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments) {
   Profile profile = read_profile(id_or_path);
   for (const std::string& assignment : arguments.settings) set_profile_key(profile, assignment);
+  check_settings(profile);
   return profile;
 }
 

@@ -176,6 +176,11 @@ void set_profile_key(Profile& profile, std::string_view assignment) {
   refuse_setting(fmt::format("There is no key \"{}\"", name));
 }
 
+void check_settings(const Profile& profile) {
+  if (const std::string missing = missing_for_abilities(profile); !missing.empty())
+    refuse_setting(missing);
+}
+
 std::vector<ProfileKey> profile_keys() {
   Profile names_only;
   std::vector<ProfileKey> rows;

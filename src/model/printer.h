@@ -25,7 +25,7 @@ enum class HandoffDocument { kTrayStl, kTray3mf };
 // The geometry of a job: sections 3 to 6 of the paper.
 struct ShapeSettings {
   double wall_mm = 3;
-  double voxel_mm = 0.75;                 // of the distance grid
+  double voxel_mm = 1;                    // of the distance grid
   double min_cavity_mm3 = 500;            // smaller cavities stay solid
   double resample_tolerance_mm = 0.3;     // furthest a re-sampled surface may lie from the model
   std::string tetgen_flags = "pYq1.6a";   // documented in docs/PROFILES
@@ -159,6 +159,10 @@ Profile read_profile(std::string_view id_or_path);
 // those of the tables [polyjet], [fdm], [material], [cost], [slicer] and [link] carry the table's
 // name and a dot ("fdm.start_s=60"). Throws Error{kUsage}.
 void set_profile_key(Profile& profile, std::string_view assignment);
+
+// To be called after the last set_profile_key: a new technology or dialect may demand keys that the
+// profile does not have. Throws Error{kUsage}.
+void check_settings(const Profile& profile);
 
 // The whole profile with every key, as TOML that read_profile accepts.
 std::string profile_toml(const Profile& profile);

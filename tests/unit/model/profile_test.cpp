@@ -218,6 +218,16 @@ TEST_F(ProfileTest, ProfilesAreLookedForInOrder) {
   }
 }
 
+TEST_F(ProfileTest, SetMayNotTakeAwayWhatAbilitiesNeed) {
+  Profile profile = read_text(kSmall);
+  check_settings(profile);
+  set_profile_key(profile, "dialect=gcode");
+  EXPECT_THROW(check_settings(profile), Error);
+  set_profile_key(profile, "slicer.start_gcode=G28");
+  set_profile_key(profile, "slicer.end_gcode=M84");
+  check_settings(profile);
+}
+
 TEST_F(ProfileTest, SetTakesWhatAProfileTakes) {
   Profile profile = read_text(kSmall);
   set_profile_key(profile, "build_mm=100,100,300");
