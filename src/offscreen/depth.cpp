@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "offscreen/offscreen.h"
 #include "offscreen/surface.h"
@@ -7,16 +8,15 @@
 namespace packmerger {
 
 struct DepthRenderer::Surface {
-  std::unique_ptr<DrawingSurface> drawing;
+  std::map<int, std::unique_ptr<DrawingSurface>> by_size;
 
-  // Surfaces only grow: rotated parts come in many sizes and making one is slow.
-  DrawingSurface& at_least(int width, int height) {
-    if (drawing && drawing->width() >= width && drawing->height() >= height) return *drawing;
-    const int old_width = drawing ? drawing->width() : 0;
-    const int old_height = drawing ? drawing->height() : 0;
-    drawing.reset();
-    drawing = std::make_unique<DrawingSurface>(std::max({width, old_width, 64}),
-                                               std::max({height, old_height, 64}));
+  // The surface's size enters the rounding of depths, so it must follow from what is drawn and not
+  // from what was drawn before.
+  DrawingSurface& for_size(int width, int height) {
+    int size = 64;
+    while (size < std::max(width, height)) size *= 2;
+    std::unique_ptr<DrawingSurface>& drawing = by_size[size];
+    if (!drawing) drawing = std::make_unique<DrawingSurface>(size, size);
     return *drawing;
   }
 };
@@ -96,14 +96,14 @@ DepthMap no_hits(const RayLattice& rays, float nothing) {
 
 DepthMap DepthRenderer::from_above(const DepthTriangles& triangles, const RayLattice& rays) {
   if (triangles.triangles.empty()) return no_hits(rays, kNothingBelow);
-  const DrawingSurface::Current current(surface_->at_least(rays.width, rays.height));
+  const DrawingSurface::Current current(surface_->for_size(rays.width, rays.height));
   const HeightRange range = height_range(triangles);
   return draw_depth(triangles, rays, range.high, range.low, kNothingBelow);
 }
 
 DepthMap DepthRenderer::from_below(const DepthTriangles& triangles, const RayLattice& rays) {
   if (triangles.triangles.empty()) return no_hits(rays, kNothingAbove);
-  const DrawingSurface::Current current(surface_->at_least(rays.width, rays.height));
+  const DrawingSurface::Current current(surface_->for_size(rays.width, rays.height));
   const HeightRange range = height_range(triangles);
   return draw_depth(triangles, rays, range.low, range.high, kNothingAbove);
 }

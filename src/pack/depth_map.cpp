@@ -186,7 +186,7 @@ DepthMaps quarter_turned(const DepthMaps& maps, int quarters) {
   return turned;
 }
 
-DepthMaps united(const std::vector<const DepthMaps*>& members) {
+DepthMaps united_maps(const std::vector<const DepthMaps*>& members) {
   DepthMaps all;
   int x1 = members.front()->x0;
   int y1 = members.front()->y0;

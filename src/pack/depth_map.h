@@ -38,6 +38,6 @@ DepthMaps draw_depth_maps(DepthRenderer& renderer, const TriangleSoup& surface, 
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters);
 
 // The maps of several items, of the same rotation and grid, as one.
-DepthMaps united(const std::vector<const DepthMaps*>& members);
+DepthMaps united_maps(const std::vector<const DepthMaps*>& members);
 
 }  // namespace packmerger

@@ -209,7 +209,7 @@ DepthMaps PartMaker::part_maps(const std::vector<int>& items, const Mat3& way, d
     held.push_back(maps(shapes_[static_cast<std::size_t>(item)].twin, drawn));
     members.push_back(held.back().get());
   }
-  return quarter_turned(united(members), split.quarters);
+  return quarter_turned(united_maps(members), split.quarters);
 }
 
 RotatedPart PartMaker::rotated(const std::vector<int>& items, const WayUp& way, double turn) {

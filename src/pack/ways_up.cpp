@@ -80,13 +80,13 @@ std::vector<WayUp> ranked_ways_up(const std::vector<TriangleSoup>& surfaces, dou
   std::vector<WayUp> ways;
   for (const Mat3& way : rotations.ways_up) {
     // Support hardly depends on the turn; the box does, so the cheapest box decides the turn.
-    double best_cost = std::numeric_limits<double>::infinity();
+    double best_cost = 0;
     std::optional<double> best;
     for (const double turn : rotations.turns) {
       const Vec3 size = size_turned(surfaces, turn_about_z(turn) * way);
       if (!fits(size, problem.build_mm)) continue;
       const double cost = problem.cost.evaluate({size, 0, volume_mm3, 1});
-      if (cost < best_cost - 1e-9 * std::abs(best_cost)) {
+      if (!best || cost < best_cost - 1e-9 * std::abs(best_cost)) {
         best_cost = cost;
         best = turn;
       }

@@ -1,0 +1,276 @@
+// The packer's pieces: rotations, columns, depth maps, tabu search, exact gaps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include <rapidcheck/gtest.h>
+
+#include "base/random.h"
+#include "pack/columns.h"
+#include "pack/depth_map.h"
+#include "pack/exact_gap.h"
+#include "pack/merge.h"
+#include "pack/order.h"
+#include "pack/rotations.h"
+#include "unit/pack/check.h"
+#include "unit/pack/problems.h"
+
+namespace packmerger {
+namespace {
+
+Mat3 any_rotation(Random& random) {
+  return (Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitZ()) *
+          Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitX()) *
+          Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitY()))
+      .toRotationMatrix();
+}
+
+Mesh turned(const Mesh& mesh, const Mat3& rotation) {
+  Pose pose = Pose::Identity();
+  pose.linear() = rotation;
+  return transformed(mesh, pose);
+}
+
+TEST(Rotations, AreTheDifferentProductsOfSteps) {
+  EXPECT_EQ(rotation_set(0).ways_up.size(), 1U);
+  EXPECT_EQ(rotation_set(radians(90)).ways_up.size(), 6U);
+  EXPECT_EQ(rotation_set(radians(90)).turns.size(), 4U);
+  const RotationSet set = rotation_set(radians(30));
+  EXPECT_EQ(set.ways_up.size(), 62U);
+  EXPECT_EQ(set.turns.size(), 12U);
+  // Any product of steps about three axes is among them.
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    const auto turn = [&random](const Vec3& axis) {
+      return Eigen::AngleAxisd(radians(30.0 * static_cast<double>(random.below(12))), axis);
+    };
+    const Mat3 wanted =
+        (turn(Vec3::UnitZ()) * turn(Vec3::UnitY()) * turn(Vec3::UnitX())).toRotationMatrix();
+    double nearest = 10;
+    for (const Mat3& way : set.ways_up)
+      for (const double angle : set.turns)
+        nearest = std::min(nearest, (turn_about_z(angle) * way - wanted).norm());
+    EXPECT_LT(nearest, 1e-9);
+  }
+}
+
+TEST(Columns, CountWhatTheFormulaSays) {
+  // A ball on the plate: between it and the plate lie π r³ / 3.
+  const TriangleSoup ball = to_soup(shapes::sphere(10, 96));
+  const ColumnSupport support = column_support({ball}, 0.1, 0, -10);
+  EXPECT_NEAR(support.below, std::numbers::pi * 1000 / 3, 15);
+  EXPECT_EQ(support.inside, 0);
+  // Below 45° only the part of the surface within 45° of the pole needs support.
+  const double s = std::sqrt(0.5);
+  const double cap = std::numbers::pi * 1000 * (s * s - 2.0 / 3 * (1 - s * s * s));
+  EXPECT_NEAR(column_support({ball}, 0.1, radians(45), -10).below, cap, 15);
+  EXPECT_EQ(column_support({ball}, 0.1, radians(90), -10).below, 0);
+}
+
+TEST(Columns, CupUpsideDownIsFullOfSupportAndUprightIsNot) {
+  const Mesh cup = shapes::cup(10, 20, 2, 48);
+  EXPECT_NEAR(column_support({to_soup(cup)}, 0.2, 0, 0).below, 0, 1e-9);
+  Mat3 over = Mat3::Identity();
+  over(1, 1) = over(2, 2) = -1;
+  const ColumnSupport support = column_support({to_soup(turned(cup, over))}, 0.2, 0, -20);
+  EXPECT_NEAR(support.below, std::numbers::pi * 64 * 18, 60);
+  // On its side, the lower wall carries what supports the upper one.
+  Mat3 aside;
+  aside << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  EXPECT_GT(column_support({to_soup(turned(cup, aside))}, 0.2, 0, -10).inside, 1000);
+}
+
+RC_GTEST_PROP(Columns, AgreeWithTheEnvelopeAtZeroDegrees, (std::uint64_t seed)) {
+  // At 0° the support is the volume under the upper envelope less the matter.
+  Random random(seed);
+  const Mesh bowl = turned(shapes::bowl(15, 2, 24), any_rotation(random));
+  const double plate = bounding_box(bowl).min().z();
+  const ColumnSupport support = column_support({to_soup(bowl)}, 0.25, 0, plate);
+  PackProblem problem = shapes::problem_of({bowl}, Vec3(80, 80, 80));
+  PlacedPart part{{0}, Pose::Identity(), 0};
+  part.pose.translation() = Vec3(40, 40, -plate);
+  const check::Columns columns(check::placed_triangles(problem, part), problem.build_mm, 0.25);
+  double envelope = 0;
+  for (const double top : columns.high)
+    if (std::isfinite(top)) envelope += top * 0.25 * 0.25;
+  const double expected = envelope - volume_mm3(bowl);
+  RC_ASSERT(std::abs(support.below + support.inside - expected) < 0.02 * expected + 40);
+}
+
+// Nothing of the surface lies in a cell without bounds or outside of them.
+void expect_bounds(const DepthMaps& maps, const Mesh& mesh, double grid, Random& random) {
+  const double slack = 0.004 * grid + 1e-3;
+  for (const auto face : mesh.faces()) {
+    const auto corner = corners(mesh, face);
+    const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    for (int i = 0; i < 200; ++i) {
+      double u = random.unit();
+      double v = random.unit();
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
+      const Vec3 p = corner[0] + u * (corner[1] - corner[0]) + v * (corner[2] - corner[0]);
+      const int x = static_cast<int>(std::floor(p.x() / grid)) - maps.x0;
+      const int y = static_cast<int>(std::floor(p.y() / grid)) - maps.y0;
+      RC_ASSERT(x >= 0 && x < maps.width && y >= 0 && y < maps.height);
+      const std::size_t at = static_cast<std::size_t>(y * maps.width + x);
+      // Steep facets may be off by the slack sideways.
+      const double allowed = slack / std::max(std::abs(normal.z()), 1e-3);
+      RC_ASSERT(maps.low[at] <= p.z() + allowed);
+      RC_ASSERT(maps.top[at] >= p.z() - allowed);
+    }
+  }
+}
+
+RC_GTEST_PROP(DepthMaps, BoundTheSurfaceInEveryCell, (std::uint64_t seed)) {
+  Random random(seed);
+  const double grid = 0.5 + random.unit();
+  const Mesh mesh = turned(random.below(2) == 0 ? shapes::l_shape(20, 3, 11)
+                                                : shapes::bowl(13, 1.5, 12),
+                           any_rotation(random));
+  DepthRenderer renderer;
+  const DepthMaps maps = draw_depth_maps(renderer, to_soup(mesh), grid, 0);
+  expect_bounds(maps, mesh, grid, random);
+  // Turned by quarters, they bound the turned surface.
+  for (int quarters = 1; quarters < 4; ++quarters)
+    expect_bounds(quarter_turned(maps, quarters),
+                  turned(mesh, turn_about_z(quarters * std::numbers::pi / 2)), grid, random);
+}
+
+TEST(DepthMaps, BoundsAreTight) {
+  // A plane slope of 1 in x: the bounds of a cell lie one cell apart, the sample in the middle.
+  const Mesh wedge = shapes::tetrahedron(20);
+  DepthRenderer renderer;
+  const DepthMaps maps = draw_depth_maps(renderer, to_soup(wedge), 1, 0);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      const std::size_t at = static_cast<std::size_t>(y * maps.width + x);
+      EXPECT_NEAR(maps.top[at], 20 - x - y, 0.02);
+      EXPECT_NEAR(maps.roof[at], 19 - x - y, 0.02);
+      EXPECT_NEAR(maps.low[at], 0, 1e-4);
+    }
+}
+
+TEST(DepthMaps, ABoxOnTheGridKeepsToItsCells) {
+  DepthRenderer renderer;
+  const DepthMaps maps =
+      draw_depth_maps(renderer, to_soup(shapes::box(Vec3(5, 3, 2), Vec3(-2, 1, 4))), 1, 0);
+  EXPECT_EQ(maps.x0, -2);
+  EXPECT_EQ(maps.y0, 1);
+  EXPECT_EQ(maps.width, 5);
+  EXPECT_EQ(maps.height, 3);
+  for (std::size_t i = 0; i < maps.low.size(); ++i) {
+    EXPECT_NEAR(maps.low[i], 4, 1e-4);
+    EXPECT_NEAR(maps.top[i], 6, 1e-4);
+    EXPECT_EQ(maps.hangs[i], 1);
+  }
+}
+
+TEST(DepthMaps, UnitedMapsAreTheMapsOfTheUnion) {
+  const Mesh a = shapes::box(Vec3(4, 4, 4), Vec3(0.3, 0.3, 0));
+  const Mesh b = shapes::box(Vec3(4, 4, 4), Vec3(2.3, 6.3, 8));
+  DepthRenderer renderer;
+  const DepthMaps map_a = draw_depth_maps(renderer, to_soup(a), 1, 0);
+  const DepthMaps map_b = draw_depth_maps(renderer, to_soup(b), 1, 0);
+  const DepthMaps both = united_maps({&map_a, &map_b});
+  const DepthMaps drawn = draw_depth_maps(renderer, to_soup(united(std::vector<const Mesh*>{&a, &b})), 1, 0);
+  ASSERT_EQ(both.low.size(), drawn.low.size());
+  for (std::size_t i = 0; i < both.low.size(); ++i) {
+    EXPECT_TRUE(both.low[i] == drawn.low[i] || std::abs(both.low[i] - drawn.low[i]) < 1e-4);
+    EXPECT_TRUE(both.top[i] == drawn.top[i] || std::abs(both.top[i] - drawn.top[i]) < 1e-4);
+  }
+  EXPECT_EQ(both.hangs, drawn.hangs);
+}
+
+TEST(ExactGap, KnownDistances) {
+  const Mesh a = shapes::box(Vec3(10, 10, 10));
+  EXPECT_EQ(least_gap_mm({a}), std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(least_gap_mm({a, shapes::box(Vec3(5, 5, 5), Vec3(11.5, 2, 2))}), 1.5, 1e-9);
+  EXPECT_NEAR(least_gap_mm({a, shapes::box(Vec3(5, 5, 5), Vec3(13, 14, 10))}), 5, 1e-9);
+  EXPECT_EQ(least_gap_mm({a, shapes::box(Vec3(5, 5, 5), Vec3(8, 8, 8))}), 0);
+  EXPECT_EQ(least_gap_mm({a, shapes::box(Vec3(2, 2, 2), Vec3(4, 4, 4))}), 0);  // swallowed
+  EXPECT_EQ(least_gap_mm({shapes::box(Vec3(2, 2, 2), Vec3(4, 4, 4)), a}), 0);
+  EXPECT_GE(least_gap_mm({a, shapes::box(Vec3(5, 5, 5), Vec3(40, 0, 0))}, 2), 2);
+  // In a cup, but not in its matter.
+  EXPECT_NEAR(least_gap_mm({shapes::cup(10, 20, 2, 48), shapes::box(Vec3(2, 2, 2), Vec3(-1, -1, 5))}),
+              3, 1e-9);
+}
+
+RC_GTEST_PROP(ExactGap, AgreesWithBruteForce, (std::uint64_t seed)) {
+  Random random(seed);
+  PackProblem problem = shapes::problem_of({shapes::l_shape(10, 2, 5), shapes::tetrahedron(8)},
+                                           Vec3(100, 100, 100));
+  PlacedPart a{{0}, Pose::Identity(), 0};
+  PlacedPart b{{1}, Pose::Identity(), 0};
+  a.pose.linear() = any_rotation(random);
+  b.pose.linear() = any_rotation(random);
+  b.pose.translation() = any_rotation(random) * Vec3(17 + 10 * random.unit(), 0, 0);
+  const double exact = check::brute_force_distance(check::placed_triangles(problem, a),
+                                                   check::placed_triangles(problem, b));
+  RC_PRE(exact > 0.01);
+  RC_ASSERT(std::abs(least_gap_mm({transformed(problem.items[0].surface, a.pose),
+                                   transformed(problem.items[1].surface, b.pose)}) -
+                     exact) < 1e-6);
+}
+
+TEST(Tabu, SortsAListAndIsTheSameOnEveryRun) {
+  constexpr int kCount = 9;
+  Order start(kCount);
+  std::iota(start.rbegin(), start.rend(), 0);
+  const auto inversions = [](const Order& order) {
+    double sum = 0;
+    for (std::size_t i = 0; i < order.size(); ++i)
+      for (std::size_t j = i + 1; j < order.size(); ++j) sum += order[i] > order[j];
+    return sum;
+  };
+  Order at = start;
+  int rounds = 0;
+  OrderCost cost;
+  cost.evaluate = [&](const Order& order, std::size_t first_change, double) {
+    for (std::size_t i = 0; i < first_change; ++i) EXPECT_EQ(order[i], at[i]);
+    return inversions(order);
+  };
+  cost.moved = [&](const Order& order, std::size_t) { at = order; };
+  cost.go_on = [&](int) { return ++rounds < 1000; };
+  const FoundOrder found = tabu_search(start, inversions(start), {3, 100, 20, 5}, cost);
+  EXPECT_EQ(found.cost, 0);
+  EXPECT_TRUE(std::is_sorted(found.order.begin(), found.order.end()));
+  at = start;
+  const FoundOrder again = tabu_search(start, inversions(start), {3, 100, 20, 5}, cost);
+  EXPECT_EQ(found.order, again.order);
+}
+
+TEST(Tabu, EndsWithoutPatienceAndWithNothingToSwap) {
+  OrderCost cost;
+  int evaluations = 0;
+  cost.evaluate = [&](const Order&, std::size_t, double) {
+    ++evaluations;
+    return 1.0;
+  };
+  cost.moved = [](const Order&, std::size_t) {};
+  cost.go_on = [](int) { return true; };
+  EXPECT_EQ(tabu_search({0}, 1, {3, 10, 8, 1}, cost).order, Order{0});
+  EXPECT_EQ(evaluations, 0);
+  EXPECT_EQ(tabu_search({0, 1, 2}, 1, {3, 0, 8, 1}, cost).cost, 1);
+  EXPECT_EQ(evaluations, 0);
+}
+
+TEST(Merge, PairsFollowTheGraphAndStayWithinAModel) {
+  PackProblem problem = shapes::problem_of(
+      {shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1)),
+       shapes::box(Vec3(1, 1, 1))},
+      Vec3(10, 10, 10));
+  for (PackItem& item : problem.items) item.model = 0;
+  problem.items[3].model = 1;
+  problem.edges = {{0, 1, 1}, {0, 2, 1}, {1, 2, 1}, {2, 3, 1}};
+  using Pairs = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(mergeable_pairs({{0}, {1}, {2}, {3}}, problem), (Pairs{{0, 1}, {0, 2}, {1, 2}}));
+  EXPECT_EQ(mergeable_pairs({{0, 1}, {2}, {3}}, problem), (Pairs{{0, 1}}));
+  EXPECT_EQ(mergeable_pairs({{0, 1, 2}, {3}}, problem), Pairs{});
+  EXPECT_EQ(merged({0, 4}, {1, 9}), (ItemSet{0, 1, 4, 9}));
+}
+
+}  // namespace
+}  // namespace packmerger
