@@ -112,9 +112,6 @@ TEST_F(WorkerTest, TellsWhyItFailed) {
 }
 
 TEST_F(WorkerTest, AHungryChildIsStopped) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the child inherits nothing of the sanitizer, but its limits do not fit here";
-#endif
   EXPECT_THAT(std::get<PrepareFailed>(end_of(order("memory.stl"))).failure.what,
               HasSubstr("not enough memory"));
 }
