@@ -203,8 +203,11 @@ TEST(Terminals, GpxPrintsToTheReplicator) {
   std::vector<std::string> convert = common;
   const fs::path x3g = printer.folder() / "job.x3g";
   convert.insert(convert.end(), {gcode.string(), x3g.string()});
-  ASSERT_TRUE(run_process({.argv = stream}, 30, {}).status.ok());
-  ASSERT_TRUE(run_process({.argv = convert}, 30, {}).status.ok());
+  for (const auto& argv : {stream, convert}) {
+    ProcessSpec spec;
+    spec.argv = argv;
+    ASSERT_TRUE(run_process(spec, 30, {}).status.ok());
+  }
 
   std::string streamed;
   for (const std::string& line : printer.record()) streamed += line;
