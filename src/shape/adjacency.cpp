@@ -25,8 +25,7 @@ std::vector<SegmentEdge> adjacency(const TetMesh& mesh, const Segments& segments
 
 std::vector<double> segment_volumes(const TetMesh& mesh, const Segments& segments) {
   std::vector<double> volumes(segments.count, 0);
-  for (int t = 0; t < mesh.count(); ++t)
-    volumes[segments.of_tetrahedron[t]] += mesh.volume_mm3(t);
+  for (int t = 0; t < mesh.count(); ++t) volumes[segments.of_tetrahedron[t]] += mesh.volume_mm3(t);
   return volumes;
 }
 

@@ -33,7 +33,8 @@ BoundarySurface boundary_surface(const TetMesh& mesh) {
   for (std::size_t i = 0; i < sides.size(); i += 2) {
     if (i + 1 >= sides.size() || !same(sides[i], sides[i + 1]) ||
         (i + 2 < sides.size() && same(sides[i], sides[i + 2])))
-      throw Error(Fault::kInternal, "The surface of the tetrahedral mesh is not a closed 2-manifold",
+      throw Error(Fault::kInternal,
+                  "The surface of the tetrahedral mesh is not a closed 2-manifold",
                   "Please report this model to the PackMerger project.");
     surface.faces[sides[i].face].across[sides[i].edge] = sides[i + 1].face;
     surface.faces[sides[i + 1].face].across[sides[i + 1].edge] = sides[i].face;

@@ -1,4 +1,5 @@
-// The surface of a tetrahedral mesh as triangles that know their neighbours. Internal to this folder.
+// The surface of a tetrahedral mesh as triangles that know their neighbours. Internal to this
+// folder.
 #pragma once
 
 #include <array>

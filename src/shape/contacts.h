@@ -9,8 +9,8 @@
 
 namespace packmerger {
 
-// Asked before a tetrahedron changes hands: two segments that only come to touch by such a change would
-// have a tiny cross-section, which is hard to glue.
+// Asked before a tetrahedron changes hands: two segments that only come to touch by such a change
+// would have a tiny cross-section, which is hard to glue.
 class Contacts {
  public:
   Contacts(const TetMesh& mesh, const Segments& segments) {

@@ -19,9 +19,10 @@ constexpr double kRounding_mm = 1e-6;  // a part exactly as long as the tray fit
 
 FitTest::FitTest(const BuildVolume& build) : build_mm_(build.build_mm) {
   using std::numbers::pi;
-  const int steps = build.rotation_step > 0 ? std::max(1, static_cast<int>(std::floor(
-                                                              2 * pi / build.rotation_step + 1e-9)))
-                                            : 1;
+  const int steps =
+      build.rotation_step > 0
+          ? std::max(1, static_cast<int>(std::floor(2 * pi / build.rotation_step + 1e-9)))
+          : 1;
   const auto turn = [&](int i, const Vec3& axis) {
     return Eigen::AngleAxisd(i * build.rotation_step, axis).toRotationMatrix();
   };

@@ -10,8 +10,8 @@
 
 namespace packmerger {
 
-// Answers from the extents of each segment along every axis that some rotation turns into x, y or z:
-// the extents of a union are the hull of the extents, so no geometry is looked at twice.
+// Answers from the extents of each segment along every axis that some rotation turns into x, y or
+// z: the extents of a union are the hull of the extents, so no geometry is looked at twice.
 class FitTest {
  public:
   // The least and greatest coordinate of one segment along each axis, mm.
@@ -31,8 +31,8 @@ class FitTest {
 
  private:
   Vec3 build_mm_;
-  std::vector<Vec3> axes_;                      // without opposites
-  std::vector<std::array<int, 3>> rotations_;   // which axes become x, y and z
+  std::vector<Vec3> axes_;                     // without opposites
+  std::vector<std::array<int, 3>> rotations_;  // which axes become x, y and z
 };
 
 }  // namespace packmerger

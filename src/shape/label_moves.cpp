@@ -58,7 +58,8 @@ class CutLength {
     double sum = 0;
     for (const auto& face : surface_.faces)
       for (int i = 0; i < 3; ++i) sum += edge_mm(face, i);
-    weight_mm_ = surface_.faces.empty() ? 0 : sum / (3 * static_cast<double>(surface_.faces.size()));
+    weight_mm_ =
+        surface_.faces.empty() ? 0 : sum / (3 * static_cast<double>(surface_.faces.size()));
   }
 
   // mm²

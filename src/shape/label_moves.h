@@ -1,5 +1,5 @@
-// Moves of single tetrahedra from one segment to another that never break a segment. Internal to this
-// folder.
+// Moves of single tetrahedra from one segment to another that never break a segment. Internal to
+// this folder.
 #pragma once
 
 #include <vector>
@@ -41,14 +41,15 @@ class LabelMoves {
   std::vector<int> stack_;
 };
 
-// Re-assigns whole tetrahedra whose edges are at most reach_mm long where that leaves fewer pinches.
-// Returns how many moves were made.
+// Re-assigns whole tetrahedra whose edges are at most reach_mm long where that leaves fewer
+// pinches. Returns how many moves were made.
 int reassign_pinched(const TetMesh& mesh, Segments& segments, double reach_mm,
                      const Progress& progress);
 
-// Re-assigns teeth: tetrahedra whose move makes the area of the cuts, and the length of the cut curves
-// on the surface times the mesh's mean edge length, smaller together, makes no new pinch, and lets no
-// two segments share faces that shared none. A few sweeps. Returns how many moves were made.
+// Re-assigns teeth: tetrahedra whose move makes the area of the cuts, and the length of the cut
+// curves on the surface times the mesh's mean edge length, smaller together, makes no new pinch,
+// and lets no two segments share faces that shared none. A few sweeps. Returns how many moves were
+// made.
 int straighten_cuts(const TetMesh& mesh, Segments& segments, const Progress& progress);
 
 }  // namespace packmerger

@@ -34,11 +34,10 @@ int receiver(const std::vector<Candidate>& candidates, Contacts& contacts) {
       new_contacts += contacts.has(c.label, other.label) ? 0 : 1;
     return std::tuple(new_contacts, c.pieces > 1 ? 1 : 0, -c.share, c.label);
   };
-  const int label = std::min_element(candidates.begin(), candidates.end(),
-                                     [&](const Candidate& a, const Candidate& b) {
-                                       return rank(a) < rank(b);
-                                     })
-                        ->label;
+  const int label =
+      std::min_element(candidates.begin(), candidates.end(),
+                       [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); })
+          ->label;
   for (const Candidate& other : candidates) contacts.add(label, other.label);
   return label;
 }
@@ -89,7 +88,8 @@ std::vector<Candidate> around_edge(const TetMesh& mesh, const std::vector<int>& 
                             [&](const Candidate& c) { return c.label == labels[t]; });
     if (one == found.end()) one = found.insert(one, {labels[t], 0, 0});
     one->share += dihedral_angle(mesh, t, edge);
-    // A run of n tetrahedra has n - 1 inner faces, so the two faces of each, halved, miss one a run.
+    // A run of n tetrahedra has n - 1 inner faces, so the two faces of each, halved, miss one a
+    // run.
     int inner = 0;
     for (int face = 0; face < 4; ++face) {
       const int corner = mesh.tetrahedra[t][face];
@@ -185,9 +185,10 @@ ManifoldChange make_manifold(TetMesh& mesh, Segments& segments, const Progress& 
   change.reassigned = reassign_pinched(mesh, segments, reach_mm, progress);
   change.split = split_pinched(mesh, segments, reach_mm, progress);
   if (change.split > 0 && !is_manifold(mesh, segments))
-    throw Error(Fault::kInternal,
-                "Parts stay pinched although they were cut free: the shell's own surface is pinched",
-                "Repair the model in a mesh editor and try again.");
+    throw Error(
+        Fault::kInternal,
+        "Parts stay pinched although they were cut free: the shell's own surface is pinched",
+        "Repair the model in a mesh editor and try again.");
   return change;
 }
 

@@ -21,16 +21,17 @@ inline constexpr double kFreeReach = std::numeric_limits<double>::infinity();
 
 // A part is pinched where it touches itself along an edge or in a vertex only. First whole
 // tetrahedra are re-assigned where that removes pinches and makes no new one; what is left is
-// removed by cutting a small spindle around each pinched edge, then a small ball around each pinched
-// vertex, out of all parts that meet there and giving it to one of them. That ends after one pass: a
-// spindle or a ball leaves no pinch in its star and makes none elsewhere.
+// removed by cutting a small spindle around each pinched edge, then a small ball around each
+// pinched vertex, out of all parts that meet there and giving it to one of them. That ends after
+// one pass: a spindle or a ball leaves no pinch in its star and makes none elsewhere.
 //
 // In: the mesh's own boundary is a closed 2-manifold and every label is face-connected.
 // Out: every part's boundary is a closed 2-manifold with equal positions welded, every part is
 // face-connected, the mesh still conforms and fills the same space (points of the outer and cavity
 // surfaces stay, new ones lie on them). No part gains a point further than reach_mm away from where
-// it was: with kPlacedReach_mm only tetrahedra smaller than that are re-assigned, so this is the call
-// after packing. Deterministic. Throws Error{kInternal} when the mesh breaks the conditions above.
+// it was: with kPlacedReach_mm only tetrahedra smaller than that are re-assigned, so this is the
+// call after packing. Deterministic. Throws Error{kInternal} when the mesh breaks the conditions
+// above.
 ManifoldChange make_manifold(TetMesh& mesh, Segments& segments, const Progress& progress,
                              double reach_mm = kPlacedReach_mm);
 

@@ -28,7 +28,8 @@ SegmentSurface surface_of(const TetMesh& mesh, const std::vector<int>& labels,
       if (across >= 0 && labels[across] == label) continue;
       std::array<int, 3> triangle = face_corners(mesh, t, face);
       for (int& corner : triangle) {
-        const auto [entry, is_new] = index_of.try_emplace(corner, static_cast<int>(index_of.size()));
+        const auto [entry, is_new] =
+            index_of.try_emplace(corner, static_cast<int>(index_of.size()));
         if (is_new) soup.points.push_back(mesh.points[corner]);
         corner = entry->second;
       }

@@ -14,8 +14,8 @@
 namespace packmerger {
 namespace {
 
-// The paper's weighted graph G(V, E) while edges are contracted. A group keeps the label of its lowest
-// member; the labels of the others are empty.
+// The paper's weighted graph G(V, E) while edges are contracted. A group keeps the label of its
+// lowest member; the labels of the others are empty.
 class SegmentGraph {
  public:
   SegmentGraph(const TetMesh& mesh, const Segments& segments, const FitTest& fit)
@@ -86,7 +86,8 @@ Pair smallest_glue(const SegmentGraph& graph, double min_area_mm2) {
   return best;
 }
 
-// The smallest segment below the limit that may merge, and its smallest such neighbour; a < 0: none.
+// The smallest segment below the limit that may merge, and its smallest such neighbour; a < 0:
+// none.
 Pair smallest_segment(const SegmentGraph& graph, double min_volume_mm3) {
   Pair best;
   for (int a = 0; a < graph.count(); ++a) {
@@ -145,11 +146,11 @@ void warn_of_leftovers(const SegmentGraph& graph, double volume_mm3, const Shape
              " %), because no merge that fits the build volume is left."});
   if (small_joints > 0)
     warnings.push_back(
-        {"small_glue_area",
-         std::to_string(small_joints) + " of " + std::to_string(joints) +
-             " joints between segments stay smaller than " + number(settings.min_glue_area_mm2) +
-             " mm² (the smallest " + number(least_area) +
-             " mm²), because no merge that fits the build volume is left."});
+        {"small_glue_area", std::to_string(small_joints) + " of " + std::to_string(joints) +
+                                " joints between segments stay smaller than " +
+                                number(settings.min_glue_area_mm2) + " mm² (the smallest " +
+                                number(least_area) +
+                                " mm²), because no merge that fits the build volume is left."});
 }
 
 }  // namespace
@@ -164,9 +165,9 @@ Segments premerge(TetMesh& mesh, const Segments& segments, const ShapeSettings& 
   for (int round = 0;; ++round) {
     progress.report("merging segments", round == 0 ? 0 : 0.5);
     const int before = merged.count;
-    merged = united(merged, merged_groups(SegmentGraph(mesh, merged, fit),
-                                          settings.min_glue_area_mm2,
-                                          settings.min_volume_fraction * volume, progress));
+    merged =
+        united(merged, merged_groups(SegmentGraph(mesh, merged, fit), settings.min_glue_area_mm2,
+                                     settings.min_volume_fraction * volume, progress));
     if (round > 0 && merged.count == before) break;
     make_manifold(mesh, merged, progress, kFreeReach);
   }

@@ -18,28 +18,36 @@ constexpr int kUnassigned = -1;
 
 // The paper's dual graph: a node for every tetrahedron.
 struct DualGraph {
-  explicit DualGraph(const TetMesh& mesh) : neighbours(mesh.neighbours) {
+  // All that growth reads of a node, on half a cache line.
+  struct alignas(32) Node {
+    std::array<int, 4> neighbours;
+    std::array<float, 4> lengths_mm;  // of the edges to them
+  };
+
+  explicit DualGraph(const TetMesh& mesh) : nodes(mesh.tetrahedra.size()) {
     for (int t = 0; t < mesh.count(); ++t) {
       centroids.push_back(mesh.centroid(t));
       volumes.push_back(mesh.volume_mm3(t));
       volume += volumes.back();
     }
-    lengths.resize(neighbours.size());
     double sum = 0;
     int edges = 0;
-    for (int t = 0; t < mesh.count(); ++t)
-      for (int face = 0; face < 4; ++face)
-        if (const int across = neighbours[t][face]; across >= 0) {
-          lengths[t][face] = (centroids[t] - centroids[across]).norm();
-          sum += lengths[t][face];
-          ++edges;
-        }
+    for (int t = 0; t < mesh.count(); ++t) {
+      nodes[t] = {mesh.neighbours[t], {}};
+      for (int face = 0; face < 4; ++face) {
+        const int across = mesh.neighbours[t][face];
+        if (across < 0) continue;
+        const double length = (centroids[t] - centroids[across]).norm();
+        nodes[t].lengths_mm[face] = static_cast<float>(length);
+        sum += length;
+        ++edges;
+      }
+    }
     if (sum > 0) bucket_mm = sum / edges / 4;
   }
-  int count() const { return static_cast<int>(neighbours.size()); }
+  int count() const { return static_cast<int>(nodes.size()); }
 
-  const std::vector<std::array<int, 4>>& neighbours;
-  std::vector<std::array<double, 4>> lengths;  // mm, of the edge across each face
+  std::vector<Node> nodes;
   std::vector<Vec3> centroids;
   std::vector<double> volumes;  // mm³
   double volume = 0;            // V_o
@@ -57,9 +65,9 @@ struct Offer {
   }
 };
 
-// A priority queue for growth, where nothing is ever offered below what was taken last: offers lie in
-// buckets of equal width by distance, and only the bucket at hand is kept as a heap. The order is that
-// of one large heap.
+// A priority queue for growth, where nothing is ever offered below what was taken last: offers lie
+// in buckets of equal width by distance, and only the bucket at hand is kept as a heap. The order
+// is that of one large heap.
 class Offers {
  public:
   explicit Offers(double width_mm) : per_mm_(1 / width_mm) {}
@@ -106,11 +114,11 @@ class Growth {
       if (!offers_.pop(taken)) return -1;
     } while (owner_[taken.tetrahedron] != kUnassigned);
     owner_[taken.tetrahedron] = taken.cluster;
+    const DualGraph::Node& node = graph_.nodes[taken.tetrahedron];
     for (int face = 0; face < 4; ++face) {
-      const int across = graph_.neighbours[taken.tetrahedron][face];
+      const int across = node.neighbours[face];
       if (across >= 0 && owner_[across] == kUnassigned)
-        offers_.push({taken.distance_mm + graph_.lengths[taken.tetrahedron][face], across,
-                      taken.cluster});
+        offers_.push({taken.distance_mm + node.lengths_mm[face], across, taken.cluster});
     }
     return taken.tetrahedron;
   }
@@ -121,8 +129,8 @@ class Growth {
   Offers offers_;
 };
 
-// Grows one cluster from a seed until it holds `target` mm³; `taken` gets its tetrahedra. False where
-// the room ended before.
+// Grows one cluster from a seed until it holds `target` mm³; `taken` gets its tetrahedra. False
+// where the room ended before.
 bool grow_one(const DualGraph& graph, int seed, int cluster, double target, std::vector<int>& owner,
               std::vector<int>& taken) {
   Growth growth(graph, owner);

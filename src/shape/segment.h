@@ -18,7 +18,8 @@ namespace packmerger {
 //   2. all clusters grow at once, nearest tetrahedron first, and are re-grown from the tetrahedra
 //      nearest their centres of mass until no centre moves settings.cluster_epsilon_mm or more, or
 //      for settings.cluster_rounds rounds;
-//   3. every part is made a closed 2-manifold (make_manifold), for which tetrahedra of `mesh` may be
+//   3. every part is made a closed 2-manifold (make_manifold), for which tetrahedra of `mesh` may
+//   be
 //      split.
 // Every segment is face-connected, no label is empty. The number of segments is near
 // settings.clusters, usually below it: seeding leaves pockets. Same mesh and seed, same answer.

@@ -149,7 +149,8 @@ class Smoother {
         if (corner != point) ring_.push_back(corner);
     std::sort(ring_.begin(), ring_.end());
     ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
-    return lies_flat(point, place) || (new_faces_are_near(point, place.face) && homes_are_near(point));
+    return lies_flat(point, place) ||
+           (new_faces_are_near(point, place.face) && homes_are_near(point));
   }
 
   // Both surfaces lie in one thin slab: the cheap test that nearly always does.
@@ -158,8 +159,7 @@ class Smoother {
     const auto is_in_slab = [&](const Vec3& p) {
       return std::abs(normal.dot(p - place.point)) <= kTolerance_mm / 2;
     };
-    return is_in_slab(walk_.home(point)) &&
-           std::all_of(ring_.begin(), ring_.end(), [&](int other) {
+    return is_in_slab(walk_.home(point)) && std::all_of(ring_.begin(), ring_.end(), [&](int other) {
              return is_in_slab(mesh_.points[other]) && is_in_slab(walk_.home(other));
            });
   }
@@ -203,7 +203,8 @@ class Smoother {
   TetMesh& mesh_;
   Stars stars_;
   SurfaceWalk walk_;
-  std::vector<int> face_of_;  // the face of the surface as it was that a boundary point lies on, or -1
+  std::vector<int>
+      face_of_;  // the face of the surface as it was that a boundary point lies on, or -1
   std::vector<double> least_volumes_;
   std::vector<int> ring_;
 };

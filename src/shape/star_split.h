@@ -1,5 +1,5 @@
-// Cutting a spindle around an edge, or a ball around a point, out of a tetrahedral mesh. Internal to
-// this folder.
+// Cutting a spindle around an edge, or a ball around a point, out of a tetrahedral mesh. Internal
+// to this folder.
 #pragma once
 
 #include <array>
@@ -20,19 +20,19 @@ class StarSplitter {
   std::vector<int> star(int point) const;
 
   // New points lie in the faces around the edge u–v, at most reach_mm from its middle and at most
-  // a third of the way to the face's third corner; the spindle between them and the edge gets `label`.
-  // Only tetrahedra that contain the edge are split. Returns how many.
+  // a third of the way to the face's third corner; the spindle between them and the edge gets
+  // `label`. Only tetrahedra that contain the edge are split. Returns how many.
   int split_edge(int u, int v, int label, double reach_mm);
 
-  // New points lie on the edges that leave the point, at most reach_mm from it and at most a third of
-  // the way; the ball within gets `label`. Only tetrahedra that contain the point are split. Returns
-  // how many.
+  // New points lie on the edges that leave the point, at most reach_mm from it and at most a third
+  // of the way; the ball within gets `label`. Only tetrahedra that contain the point are split.
+  // Returns how many.
   int split_point(int point, int label, double reach_mm);
 
  private:
   // A piece of a split tetrahedron. support[i] is the set (one bit each) of those corners of the
-  // parent that points[i] is an average of: a face whose points together miss parent corner f lies on
-  // the parent's face f.
+  // parent that points[i] is an average of: a face whose points together miss parent corner f lies
+  // on the parent's face f.
   struct Piece {
     int parent;
     std::array<int, 4> points;

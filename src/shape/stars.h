@@ -36,9 +36,9 @@ class PinchTest {
 
   struct Share {
     int label = 0;
-    int pieces = 0;     // connected over faces that contain the point
+    int pieces = 0;  // connected over faces that contain the point
     int tetrahedra = 0;
-    int euler = 0;      // of the label's closed share of the link
+    int euler = 0;  // of the label's closed share of the link
   };
   // The share of every label in the link of the point, in the order of first appearance.
   const std::vector<Share>& shares(const TetMesh& mesh, const std::vector<int>& labels, int point,

@@ -20,8 +20,8 @@ enum class Freedom : signed char {
 // Keeps a copy of the points.
 class SurfaceWalk {
  public:
-  // Edges of the outside that bend by more than crease_angle (radians) are sharp; where two meet that
-  // turn by more than that is a corner.
+  // Edges of the outside that bend by more than crease_angle (radians) are sharp; where two meet
+  // that turn by more than that is a corner.
   SurfaceWalk(const TetMesh& mesh, double crease_angle);
 
   const BoundarySurface& surface() const { return surface_; }
@@ -35,8 +35,8 @@ class SurfaceWalk {
     Vec3 point;
     int face = -1;
   };
-  // The nearest point of the surface downhill from `from` (a face): the nearest of all as long as the
-  // target is near that face.
+  // The nearest point of the surface downhill from `from` (a face): the nearest of all as long as
+  // the target is near that face.
   Place nearest(const Vec3& target, int from) const;
 
   // The nearest point on the two sharp edges at a point whose freedom is kCrease.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/random.h"
 #include "model/mesh.h"
 #include "shape/adjacency.h"
 #include "shape/part_surface.h"
@@ -24,7 +25,8 @@ inline void expect_sound_mesh(const TetMesh& mesh, double volume_mm3) {
     inverted += mesh.volume_mm3(t) <= 0 ? 1 : 0;
     for (int f = 0; f < 4; ++f) {
       unlinked += linked.neighbours[t][f] != mesh.neighbours[t][f] ? 1 : 0;
-      mismarked += (mesh.neighbours[t][f] >= 0) != (mesh.sides[t][f] == FaceSide::kInterior) ? 1 : 0;
+      mismarked +=
+          (mesh.neighbours[t][f] >= 0) != (mesh.sides[t][f] == FaceSide::kInterior) ? 1 : 0;
     }
   }
   EXPECT_EQ(inverted, 0);
@@ -77,6 +79,21 @@ inline void expect_proper_parts(const TetMesh& mesh, const Segments& segments) {
   }
   const double whole = total_volume_mm3(mesh);
   EXPECT_NEAR(sum, whole, 1e-3 * whole);
+}
+
+// Joins random neighbours until `count` are left.
+inline Segments randomly_merged(const TetMesh& mesh, Segments segments, int count, Random& random) {
+  while (segments.count > count) {
+    const auto edges = adjacency(mesh, segments);
+    if (edges.empty()) break;
+    const SegmentEdge edge = edges[random.below(edges.size())];
+    std::vector<std::vector<int>> groups;
+    for (int label = 0; label < segments.count; ++label)
+      if (label != edge.a && label != edge.b) groups.push_back({label});
+    groups.push_back({edge.a, edge.b});
+    segments = united(segments, groups);
+  }
+  return segments;
 }
 
 }  // namespace packmerger::checks
