@@ -1,3 +1,4 @@
+// The simulated Replicator's machine: its queue, its clock, what its actions do.
 #include "firmware_io/simulated/replicator.h"
 
 #include <algorithm>
@@ -8,46 +9,11 @@ namespace packmerger::simulated {
 
 namespace {
 
-constexpr std::uint16_t kVersion = 708;
-constexpr std::size_t kBufferBytes = 512;
 constexpr std::size_t kLongestPayload = 32;
 constexpr double kPacketTimeout_s = 0.2;
 constexpr double kNoiseInterval_s = 0.0005;
-constexpr double kAbort_s = 0.3;
 constexpr double kHoming_s = 5;
 constexpr double kButton_s = 5;  // someone presses the button after this
-
-enum State : std::uint8_t { kNone, kRunning, kFinished, kPausedState, kCancelled };
-
-using Bytes = std::basic_string<std::uint8_t>;
-
-// The iButton checksum, bit by bit as its register shifts.
-std::uint8_t checksum(const Bytes& bytes) {
-  unsigned shift = 0;
-  for (std::uint8_t byte : bytes)
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      const bool feedback = ((shift ^ (static_cast<unsigned>(byte) >> bit)) & 1U) != 0;
-      shift = (shift >> 1U) ^ (feedback ? 0x8CU : 0U);
-    }
-  return static_cast<std::uint8_t>(shift);
-}
-
-Bytes little_endian(std::uint32_t value, int bytes) {
-  Bytes result;
-  for (int i = 0; i < bytes; ++i) result += static_cast<std::uint8_t>(value >> (8 * i));
-  return result;
-}
-
-std::uint32_t u32(const Bytes& bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    if (at + i < bytes.size()) value |= static_cast<std::uint32_t>(bytes[at + i]) << (8 * i);
-  return value;
-}
-
-std::uint16_t u16(const Bytes& bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(u32(bytes, at) & 0xFFFFU);
-}
 
 std::string hex(const Bytes& bytes) {
   static constexpr char kDigits[] = "0123456789abcdef";
@@ -60,167 +26,6 @@ std::string hex(const Bytes& bytes) {
 }
 
 }  // namespace
-
-void Replicator::receive(std::string_view bytes, double now_s) {
-  advance(now_s);
-  for (char c : bytes) {
-    take_byte(static_cast<std::uint8_t>(c), now_s);
-    advance(now_s);
-  }
-}
-
-void Replicator::take_byte(std::uint8_t byte, double now_s) {
-  switch (expect_) {
-    case Expect::kHeader:
-      if (byte != 0xD5) {
-        noise_since_s_ = std::min(noise_since_s_, now_s);
-        return;
-      }
-      noise_since_s_ = kNever;
-      packet_since_s_ = now_s;
-      payload_.clear();
-      expect_ = Expect::kLength;
-      return;
-    case Expect::kLength:
-      length_ = byte;
-      expect_ = length_ == 0 ? Expect::kChecksum : Expect::kPayload;
-      if (length_ > kLongestPayload) {
-        expect_ = Expect::kHeader;
-        answer(0x84);
-      }
-      return;
-    case Expect::kPayload:
-      payload_ += byte;
-      if (payload_.size() == length_) expect_ = Expect::kChecksum;
-      return;
-    case Expect::kChecksum:
-      expect_ = Expect::kHeader;
-      if (byte == checksum(payload_))
-        take_packet(now_s);
-      else
-        answer(0x83);
-      return;
-  }
-}
-
-void Replicator::take_packet(double now_s) {
-  if (tell_cancelled_ || overheated_) {
-    answer(tell_cancelled_ ? 0x89 : 0x8B);
-    tell_cancelled_ = false;
-  } else if (payload_.empty()) {
-    answer(0x85);
-  } else if (payload_[0] >= 0x80) {
-    take_action();
-  } else {
-    take_query(now_s);
-  }
-}
-
-void Replicator::take_action() {
-  if (queued_bytes_ + payload_.size() > kBufferBytes) return answer(0x82);
-  queue_.push_back(payload_);
-  queued_bytes_ += payload_.size();
-  answer(0x81);
-}
-
-void Replicator::take_query(double now_s) {
-  const auto free_bytes = static_cast<std::uint32_t>(kBufferBytes - queued_bytes_);
-  switch (payload_[0]) {
-    case 0x00:
-      return answer(0x81, little_endian(u16(payload_, 1) < 39 ? 0 : kVersion, 2));
-    case 0x01:
-      return answer(0x81);
-    case 0x02:
-      return answer(0x81, little_endian(free_bytes, 4));
-    case 0x03:
-    case 0x07:
-    case 0x11:
-      stop_at_s_ = now_s + pace_.line_s(pace_.machine_s(kAbort_s));
-      return answer(0x81);
-    case 0x08:
-      if (state_ == kRunning || state_ == kPausedState) {
-        paused_ = !paused_;
-        state_ = paused_ ? kPausedState : kRunning;
-        busy_until_s_ = std::max(busy_until_s_, now_s);
-      }
-      return answer(0x81);
-    case 0x0A:
-      return take_tool_query(now_s);
-    case 0x0B:
-      return answer(0x81,
-                    {queue_.empty() && now_s >= busy_until_s_ ? std::uint8_t{1} : std::uint8_t{0}});
-    case 0x0C:
-      return answer(0x81,
-                    Bytes(payload_.size() > 3 ? std::min<std::size_t>(payload_[3], 31) : 0, 0));
-    case 0x14:
-      return answer(0x81, Bytes(build_name_.begin(), build_name_.end()) + Bytes(1, 0));
-    case 0x15:
-      return answer(0x81, position());
-    case 0x16:
-      if (payload_.size() > 1 && (payload_[1] & 2U) != 0) clear();
-      return answer(0x81, {0});
-    case 0x17:
-      return answer(0x81, {static_cast<std::uint8_t>(waits_for_button_ ? 0x10 : 0)});
-    case 0x18:
-      return answer(0x81, statistics());
-    case 0x1B:
-      return answer(0x81, little_endian(kVersion, 2) + Bytes{0, 0, 0x80, 0, 0, 0});
-    default:
-      return answer(0x85);
-  }
-}
-
-void Replicator::take_tool_query(double now_s) {
-  if (payload_.size() < 3) return answer(0x85);
-  const Heater& heater = tool(payload_[1]);
-  const auto rounded = [](double degrees) {
-    return little_endian(static_cast<std::uint32_t>(std::lround(degrees)), 2);
-  };
-  switch (payload_[2]) {
-    case 0x00:
-      return answer(0x81, little_endian(kVersion, 2));
-    case 0x02:
-      return answer(0x81, rounded(heater.temperature(now_s, pace_)));
-    case 0x1E:
-      return answer(0x81, rounded(platform_.temperature(now_s, pace_)));
-    case 0x20:
-      return answer(0x81, rounded(heater.target()));
-    case 0x21:
-      return answer(0x81, rounded(platform_.target()));
-    case 0x16:
-    case 0x24:
-      return answer(0x81,
-                    {heater.ready_s(now_s, pace_) <= now_s ? std::uint8_t{1} : std::uint8_t{0}});
-    case 0x23:
-      return answer(0x81,
-                    {platform_.ready_s(now_s, pace_) <= now_s ? std::uint8_t{1} : std::uint8_t{0}});
-    default:
-      return answer(0x85);
-  }
-}
-
-void Replicator::answer(std::uint8_t code, const Bytes& rest) {
-  const Bytes payload = Bytes(1, code) + rest;
-  output_ += static_cast<char>(0xD5);
-  output_ += static_cast<char>(payload.size());
-  output_.append(payload.begin(), payload.end());
-  output_ += static_cast<char>(checksum(payload));
-}
-
-Replicator::Bytes Replicator::statistics() const {
-  const bool building = state_ == kRunning || state_ == kPausedState;
-  const auto minutes = static_cast<std::uint32_t>((now_s_ - build_since_s_) / 60);
-  const Bytes time = {static_cast<std::uint8_t>(minutes / 60),
-                      static_cast<std::uint8_t>(minutes % 60)};
-  return Bytes(1, state_) + time + little_endian(building ? executed_count_ : last_count_, 4) +
-         little_endian(0, 4);
-}
-
-Replicator::Bytes Replicator::position() const {
-  Bytes bytes;
-  for (std::int32_t steps : position_) bytes += little_endian(static_cast<std::uint32_t>(steps), 4);
-  return bytes + little_endian(0, 2);
-}
 
 double Replicator::next_event_s() const {
   double next = std::min(stop_at_s_, noise_since_s_);

@@ -7,6 +7,7 @@
 #include <deque>
 #include <string>
 
+#include "firmware_io/simulated/bytes.h"
 #include "firmware_io/simulated/firmware.h"
 
 namespace packmerger::simulated {
@@ -25,7 +26,7 @@ class Replicator : public Firmware {
   void power_cycle();
 
  private:
-  using Bytes = std::basic_string<std::uint8_t>;
+  enum State : std::uint8_t { kNone, kRunning, kFinished, kPausedState, kCancelled };
   enum class Expect { kHeader, kLength, kPayload, kChecksum };
 
   void take_byte(std::uint8_t byte, double now_s);
@@ -66,7 +67,7 @@ class Replicator : public Firmware {
   bool waits_for_button_ = false;
   bool tell_cancelled_ = false;  // to whoever speaks next
   bool overheated_ = false;
-  std::uint8_t state_ = 0;
+  State state_ = kNone;
   std::string build_name_;
   std::uint32_t executed_count_ = 0;  // since the build start
   std::uint32_t last_count_ = 0;      // of the build that ended last
