@@ -94,6 +94,7 @@ bool WatchFolder::read_events() {
       inotify_event event;
       std::memcpy(&event, block.data() + at, sizeof event);
       const char* name = block.data() + at + sizeof event;
+      if (event.wd == watch_ && (event.mask & IN_IGNORED) != 0) watch_ = -1;  // the folder is gone
       if (event.len > 0 && (event.mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) != 0 &&
           !is_temporary_name(name))
         seen_[name].closed = true;

@@ -479,7 +479,7 @@ class RandomLife {
 
 TEST(Foreman, HoldsItsPromisesThroughRandomLives) {
   EXPECT_TRUE(rc::check("no file lost, no tray twice, no print on an unclear bed",
-                        [](std::uint32_t seed) { RandomLife(seed).run(60); }));
+                        [](std::uint32_t seed) { RandomLife(seed).run(35); }));
 }
 
 }  // namespace

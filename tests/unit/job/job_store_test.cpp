@@ -52,8 +52,8 @@ TEST(JobState, EveryJobCanEndAndNoneComesBack) {
   for (const JobState from : kStates) {
     EXPECT_EQ(may_follow(from, JobState::kFailed), !has_ended(from));
     EXPECT_EQ(may_follow(from, JobState::kCancelled), !has_ended(from));
-    if (has_ended(from))
-      for (const JobState to : kStates) EXPECT_FALSE(may_follow(from, to));
+    if (!has_ended(from)) continue;
+    for (const JobState to : kStates) EXPECT_FALSE(may_follow(from, to));
   }
   EXPECT_FALSE(may_follow(JobState::kReady, JobState::kSending)) << "never without approval";
   EXPECT_FALSE(may_follow(JobState::kReceived, JobState::kApproved));
