@@ -51,9 +51,22 @@ void look_along_z(const RayLattice& rays, double near_z, double far_z) {
   const double width = rays.width * rays.step_mm;
   const double height = rays.height * rays.step_mm;
   const double depth = far_z - near_z;
-  const std::array<double, 16> projection{2 / width, 0, 0, 0, 0, 2 / height, 0, 0, 0, 0, 2 / depth,
-                                          0, -1 - 2 * left / width, -1 - 2 * bottom / height,
-                                          -1 - 2 * near_z / depth, 1};
+  const std::array<double, 16> projection{2 / width,
+                                          0,
+                                          0,
+                                          0,
+                                          0,
+                                          2 / height,
+                                          0,
+                                          0,
+                                          0,
+                                          0,
+                                          2 / depth,
+                                          0,
+                                          -1 - 2 * left / width,
+                                          -1 - 2 * bottom / height,
+                                          -1 - 2 * near_z / depth,
+                                          1};
   glMatrixMode(GL_PROJECTION);
   glLoadMatrixd(projection.data());
   glMatrixMode(GL_MODELVIEW);
@@ -87,8 +100,8 @@ DepthMap draw_depth(const DepthTriangles& triangles, const RayLattice& rays, dou
 
 DepthMap no_hits(const RayLattice& rays, float nothing) {
   DepthMap map{rays.width, rays.height, {}};
-  map.heights.assign(
-      static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height), nothing);
+  map.heights.assign(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height),
+                     nothing);
   return map;
 }
 

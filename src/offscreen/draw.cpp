@@ -169,8 +169,8 @@ Image downsampled(const std::vector<std::uint8_t>& samples, int width, int heigh
             sum += samples[4 * (row * static_cast<std::size_t>(width * factor) + column) +
                            static_cast<std::size_t>(c)];
           }
-        image.rgba.push_back(static_cast<std::uint8_t>((sum + factor * factor / 2) /
-                                                       (factor * factor)));
+        image.rgba.push_back(
+            static_cast<std::uint8_t>((sum + factor * factor / 2) / (factor * factor)));
       }
   return image;
 }
@@ -187,8 +187,8 @@ Camera camera_looking_at(const Box3& box, const Vec3& direction, double aspect) 
   // Far enough back for each of the eight corners to lie inside the frame.
   double distance = 1e-3;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 seen = axes.transpose() *
-                      (box.corner(static_cast<Box3::CornerType>(corner)) - camera.target);
+    const Vec3 seen =
+        axes.transpose() * (box.corner(static_cast<Box3::CornerType>(corner)) - camera.target);
     distance = std::max({distance, seen.z() + std::abs(seen.x()) / slope_x,
                          seen.z() + std::abs(seen.y()) / slope_y});
   }
@@ -209,7 +209,8 @@ Image draw(const Scene& scene, const Camera& camera, int width, int height, int 
   glClearColor(scene.background.red, scene.background.green, scene.background.blue, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   look_through(camera, depth_range(scene, camera), static_cast<double>(width) / height);
-  for (const SceneMesh& item : scene.meshes) draw_vertices(GL_TRIANGLES, lit_triangles(item, camera));
+  for (const SceneMesh& item : scene.meshes)
+    draw_vertices(GL_TRIANGLES, lit_triangles(item, camera));
   draw_lines(scene, supersampling);
 
   std::vector<std::uint8_t> samples(std::size_t{4} * static_cast<std::size_t>(wide) *

@@ -39,13 +39,14 @@ struct DepthMap {
 };
 
 struct DepthTriangles {
-  std::vector<Eigen::Vector3f> points;                 // mm
+  std::vector<Eigen::Vector3f> points;                  // mm
   std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into points, in any turn
 };
 
 // Draws depth maps. Holds the drawing surfaces it needed so far; make one per thread and keep it.
 // Orthographic projection along z, point samples at the rays, no culling of back faces. A height is
-// exact to about 1e-6 of the triangles' height range plus 1/256 of the step times the facet's slope.
+// exact to about 1e-6 of the triangles' height range plus 1/256 of the step times the facet's
+// slope.
 class DepthRenderer {
  public:
   DepthRenderer();

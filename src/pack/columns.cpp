@@ -58,8 +58,7 @@ void add_crossings(const std::array<Vec3, 3>& corner, double step, double normal
       const Vec2 p((i + 0.5) * step, (j + 0.5) * step);
       if (!covers(flat, p)) continue;
       const Vec2 away = p - corner[0].head<2>();
-      const double z =
-          corner[0].z() - (normal.x() * away.x() + normal.y() * away.y()) / normal.z();
+      const double z = corner[0].z() - (normal.x() * away.x() + normal.y() * away.y()) / normal.z();
       crossings.push_back({j, i, z, normal.z() < 0, needs_support});
     }
 }
@@ -76,10 +75,10 @@ ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double s
   std::vector<Crossing> crossings;
   for (const TriangleSoup& surface : surfaces)
     for (const auto& [a, b, c] : surface.triangles)
-      add_crossings({surface.points[static_cast<std::size_t>(a)],
-                     surface.points[static_cast<std::size_t>(b)],
-                     surface.points[static_cast<std::size_t>(c)]},
-                    step_mm, limit, crossings);
+      add_crossings(
+          {surface.points[static_cast<std::size_t>(a)], surface.points[static_cast<std::size_t>(b)],
+           surface.points[static_cast<std::size_t>(c)]},
+          step_mm, limit, crossings);
   // Of two crossings at one height the way out comes first: touching matter leaves no void.
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return std::tie(a.row, a.column, a.z, a.enters) < std::tie(b.row, b.column, b.z, b.enters);

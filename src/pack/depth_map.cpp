@@ -72,8 +72,9 @@ std::vector<std::array<std::uint32_t, 3>> facets_that_need_support(const Triangl
 void enter_corners(const DepthMap& above, const DepthMap& below, DepthMaps& maps) {
   for (int j = 0; j <= maps.height; ++j)
     for (int i = 0; i <= maps.width; ++i) {
-      const std::size_t ray = static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(above.width) +
-                              static_cast<std::size_t>(2 * i);
+      const std::size_t ray =
+          static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(above.width) +
+          static_cast<std::size_t>(2 * i);
       for (int row = std::max(0, j - 1); row <= std::min(j, maps.height - 1); ++row)
         for (int column = std::max(0, i - 1); column <= std::min(i, maps.width - 1); ++column) {
           const std::size_t cell = at(maps, column, row);
@@ -93,8 +94,8 @@ void enter_centres(const DepthMap& above, const DepthMap& below, const DepthMap&
       const std::size_t cell = at(maps, column, row);
       maps.bottom[cell] = below.heights[ray];
       maps.roof[cell] = above.heights[ray];
-      maps.hangs[cell] =
-          hanging.heights[ray] != kNothingAbove && hanging.heights[ray] <= below.heights[ray] + 1e-3F;
+      maps.hangs[cell] = hanging.heights[ray] != kNothingAbove &&
+                         hanging.heights[ray] <= below.heights[ray] + 1e-3F;
     }
 }
 
@@ -113,10 +114,10 @@ void enter_edge(const Vec3& a, const Vec3& b, double grid, std::vector<double>& 
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const Vec3 middle = a + (b - a) * ((cuts[i] + cuts[i + 1]) / 2);
-    const int column = std::clamp(static_cast<int>(std::floor(middle.x() / grid)) - maps.x0, 0,
-                                  maps.width - 1);
-    const int row = std::clamp(static_cast<int>(std::floor(middle.y() / grid)) - maps.y0, 0,
-                               maps.height - 1);
+    const int column =
+        std::clamp(static_cast<int>(std::floor(middle.x() / grid)) - maps.x0, 0, maps.width - 1);
+    const int row =
+        std::clamp(static_cast<int>(std::floor(middle.y() / grid)) - maps.y0, 0, maps.height - 1);
     const std::size_t cell = at(maps, column, row);
     for (const double t : {cuts[i], cuts[i + 1]}) {
       const float z = static_cast<float>(a.z() + (b.z() - a.z()) * t);

@@ -23,9 +23,9 @@ struct DepthMaps {
   std::vector<float> low;  // kNothingAbove where the cell holds nothing
   std::vector<float> top;  // kNothingBelow
   // Samples at the cell's centre, without bias either way.
-  std::vector<float> bottom;            // kNothingAbove where the line misses
-  std::vector<float> roof;              // kNothingBelow
-  std::vector<std::uint8_t> hangs;      // 1 where the facet seen from below needs support
+  std::vector<float> bottom;        // kNothingAbove where the line misses
+  std::vector<float> roof;          // kNothingBelow
+  std::vector<std::uint8_t> hangs;  // 1 where the facet seen from below needs support
 };
 
 // surface: in the rotated frame, mm. Bounds are exact up to the z-buffer's sampling: OSMesa samples

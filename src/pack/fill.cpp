@@ -40,8 +40,7 @@ void Filler::add_off_grid(Filling& filling, int part) const {
   state.parts = 1;
   Pose pose = maker_.pose(what, rotated, 0, 0, 0);
   pose.translation() -= rotated.box.min();
-  filling.placed.push_back(
-      {part, static_cast<int>(filling.trays.size()) - 1, {}, true, pose});
+  filling.placed.push_back({part, static_cast<int>(filling.trays.size()) - 1, {}, true, pose});
 }
 
 double Filler::cost(const Filling& filling) const {

@@ -8,7 +8,7 @@
 namespace packmerger {
 
 struct Placement {
-  int part = 0;   // index into the list of parts
+  int part = 0;  // index into the list of parts
   int tray = 0;
   Spot spot;
   bool off_grid = false;  // pose counts instead of spot

@@ -59,11 +59,11 @@ struct TrayState {
   TrayMeasure measure() const;
 
   HeightField field;
-  Box3 contents;           // mm, tray coordinates; empty at first
+  Box3 contents;  // mm, tray coordinates; empty at first
   double support_mm3 = 0;
   double material_mm3 = 0;
   int parts = 0;
-  bool closed = false;     // takes no more parts: its one part fits only off the grid
+  bool closed = false;  // takes no more parts: its one part fits only off the grid
 };
 
 }  // namespace packmerger

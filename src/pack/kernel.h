@@ -8,8 +8,8 @@
 
 namespace packmerger {
 
-// heights[i]: how high the part's origin comes to lie when it is dropped at position (x + i, y): the
-// (max, +) scan max(floor, field - reach) over the cells of `reach`. Where all of up to 16
+// heights[i]: how high the part's origin comes to lie when it is dropped at position (x + i, y):
+// the (max, +) scan max(floor, field - reach) over the cells of `reach`. Where all of up to 16
 // neighbouring positions come to lie above give_up_above, their heights may be too low, but not
 // lower than that. Reads up to 15 positions behind the last.
 void fall(const CellField& upper, const std::vector<MapCell>& reach, int x, int y, float floor,

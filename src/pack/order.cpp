@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Swap {
-  std::size_t first = 0;   // positions, first < second
+  std::size_t first = 0;  // positions, first < second
   std::size_t second = 0;
 };
 

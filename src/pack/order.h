@@ -21,7 +21,8 @@ struct OrderCost {
   // The cost of an order that differs from the one last given to `moved` (or the start) from
   // position first_change on. May stop early and return infinity once the cost is sure to exceed
   // give_up_above. Called from several threads at once.
-  std::function<double(const Order& order, std::size_t first_change, double give_up_above)> evaluate;
+  std::function<double(const Order& order, std::size_t first_change, double give_up_above)>
+      evaluate;
   // The search now stands at this order. Called from the searching thread alone.
   std::function<void(const Order& order, std::size_t first_change)> moved;
   // Called once a round from the searching thread, with the number of rounds without a better

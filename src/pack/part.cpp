@@ -12,9 +12,12 @@ constexpr double kQuarter = std::numbers::pi / 2;
 
 std::size_t ways_tried(Effort effort) {
   switch (effort) {
-    case Effort::kSearch: return 8;
-    case Effort::kPlace: return 10;
-    case Effort::kAlone: return 1;
+    case Effort::kSearch:
+      return 8;
+    case Effort::kPlace:
+      return 10;
+    case Effort::kAlone:
+      return 1;
   }
   return 0;
 }
@@ -47,8 +50,8 @@ struct Raster {
 // its distance in every direction: over a cell at horizontal distance d the part reaches
 // sqrt(gap² - d²) further down.
 Raster grown_low(const DepthMaps& maps, double gap, double slack, double grid, int growth) {
-  Raster grown{maps.x0 - growth, maps.y0 - growth, maps.width + 2 * growth,
-               maps.height + 2 * growth, {}};
+  Raster grown{
+      maps.x0 - growth, maps.y0 - growth, maps.width + 2 * growth, maps.height + 2 * growth, {}};
   grown.values.assign(
       static_cast<std::size_t>(grown.width) * static_cast<std::size_t>(grown.height),
       kNothingAbove);
@@ -61,9 +64,9 @@ Raster grown_low(const DepthMaps& maps, double gap, double slack, double grid, i
           static_cast<float>(std::sqrt(std::max(0.0, radius * radius - distance * distance)));
       for (int row = 0; row < maps.height; ++row)
         for (int column = 0; column < maps.width; ++column) {
-          const float low = maps.low[static_cast<std::size_t>(row) *
-                                         static_cast<std::size_t>(maps.width) +
-                                     static_cast<std::size_t>(column)];
+          const float low =
+              maps.low[static_cast<std::size_t>(row) * static_cast<std::size_t>(maps.width) +
+                       static_cast<std::size_t>(column)];
           float& value = grown.at(maps.x0 + column + dx, maps.y0 + row + dy);
           value = std::min(value, low - further);
         }
@@ -113,9 +116,8 @@ std::vector<MapCell> blocks(const std::vector<MapCell>& cells, int coarse, bool 
 void add_surface_cells(const DepthMaps& maps, RotatedPart& part) {
   for (int row = 0; row < maps.height; ++row)
     for (int column = 0; column < maps.width; ++column) {
-      const std::size_t at =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(maps.width) +
-          static_cast<std::size_t>(column);
+      const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(maps.width) +
+                             static_cast<std::size_t>(column);
       const int x = maps.x0 + column;
       const int y = maps.y0 + row;
       if (maps.top[at] != kNothingBelow) part.top.push_back(cell(x, y, maps.top[at]));
@@ -169,8 +171,8 @@ PartMaker::PartMaker(const PackProblem& problem, double margin_mm)
       look.insert(look.end(), {point.x(), point.y(), point.z()});
     }
     for (const auto& [a, b, c] : shape.surface.triangles)
-      look.insert(look.end(), {static_cast<double>(a), static_cast<double>(b),
-                               static_cast<double>(c)});
+      look.insert(look.end(),
+                  {static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)});
     shape.twin = known.emplace(std::move(look), static_cast<int>(i)).first->second;
     shapes_.push_back(std::move(shape));
   }
@@ -194,8 +196,8 @@ std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation)
   }
   TriangleSoup surface = shapes_[static_cast<std::size_t>(twin)].surface;
   for (Vec3& point : surface.points) point = rotation * point;
-  auto drawn = std::make_shared<const DepthMaps>(draw_depth_maps(
-      renderers_.local(), surface, problem_.grid_mm, problem_.support_angle));
+  auto drawn = std::make_shared<const DepthMaps>(
+      draw_depth_maps(renderers_.local(), surface, problem_.grid_mm, problem_.support_angle));
   const std::lock_guard lock(mutex_);
   return maps_.emplace(key, std::move(drawn)).first->second;
 }
@@ -281,8 +283,8 @@ Part PartMaker::with(Part part, Effort effort) {
 Pose PartMaker::pose(const Part& part, const RotatedPart& rotated, int x, int y, double z) const {
   Pose pose = Pose::Identity();
   pose.linear() = rotated.rotation;
-  pose.translation() = Vec3(x * problem_.grid_mm, y * problem_.grid_mm, z) -
-                       rotated.rotation * centre(part.model);
+  pose.translation() =
+      Vec3(x * problem_.grid_mm, y * problem_.grid_mm, z) - rotated.rotation * centre(part.model);
   return pose;
 }
 

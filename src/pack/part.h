@@ -30,26 +30,26 @@ struct MapCell {
 // position (x, y, z) of the part adds x and y whole cells of the fine grid and z mm.
 struct RotatedPart {
   Mat3 rotation = Mat3::Identity();
-  Box3 box;                          // exact, mm
+  Box3 box;  // exact, mm
   // Fine grid.
-  std::vector<MapCell> reach;        // lower bound of matter, grown by the gap in every direction
-  Eigen::Vector2i reach_low{0, 0};   // least and greatest cell of `reach`
+  std::vector<MapCell> reach;       // lower bound of matter, grown by the gap in every direction
+  Eigen::Vector2i reach_low{0, 0};  // least and greatest cell of `reach`
   Eigen::Vector2i reach_high{0, 0};
-  std::vector<MapCell> top;          // upper bound of matter
-  std::vector<MapCell> roof;         // the highest matter at the cell's centre
-  std::vector<MapCell> hang;         // the lowest matter there, where it needs support
-  double hang_sum = 0;               // of the values of `hang`
+  std::vector<MapCell> top;   // upper bound of matter
+  std::vector<MapCell> roof;  // the highest matter at the cell's centre
+  std::vector<MapCell> hang;  // the lowest matter there, where it needs support
+  double hang_sum = 0;        // of the values of `hang`
   // Coarse grid: blocks of coarse × coarse fine cells.
-  std::vector<MapCell> coarse_reach; // mean of `reach` in the block
-  std::vector<MapCell> coarse_hang;  // number of cells of `hang` in the block
-  double inside_support_mm3 = 0;     // between the part's own surfaces
+  std::vector<MapCell> coarse_reach;  // mean of `reach` in the block
+  std::vector<MapCell> coarse_hang;   // number of cells of `hang` in the block
+  double inside_support_mm3 = 0;      // between the part's own surfaces
 };
 
 struct Part {
-  std::vector<int> items;            // sorted
+  std::vector<int> items;  // sorted
   int model = 0;
   double volume_mm3 = 0;
-  std::vector<WayUp> ways;           // that fit the build volume, best alone first
+  std::vector<WayUp> ways;  // that fit the build volume, best alone first
   std::shared_ptr<const std::vector<RotatedPart>> rotations;  // the best way's first
 };
 
@@ -80,9 +80,9 @@ class PartMaker {
   const Vec3& centre(int model) const { return centres_[static_cast<std::size_t>(model)]; }
 
  private:
-  struct Shape {          // of an item, about its model's centre
+  struct Shape {  // of an item, about its model's centre
     TriangleSoup surface;
-    int twin = 0;         // the first item with the same shape
+    int twin = 0;  // the first item with the same shape
   };
   using MapsKey = std::array<std::int64_t, 10>;  // twin and rotation
 
@@ -97,9 +97,9 @@ class PartMaker {
   int coarse_ = 1;
   int growth_ = 0;
   RotationSet rotation_set_;
-  std::vector<Vec3> centres_;   // by model
-  std::vector<Shape> shapes_;   // by item
-  std::mutex mutex_;            // guards the two caches
+  std::vector<Vec3> centres_;  // by model
+  std::vector<Shape> shapes_;  // by item
+  std::mutex mutex_;           // guards the two caches
   std::map<MapsKey, std::shared_ptr<const DepthMaps>> maps_;
   std::map<std::vector<int>, Part> parts_;  // by twins
   tbb::enumerable_thread_specific<DepthRenderer> renderers_;

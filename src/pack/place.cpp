@@ -28,18 +28,17 @@ Range intersection(const Range& a, const Range& b) {
 // Positions along one axis at which the part lies within the tray.
 Range inside_tray(const RotatedPart& part, const PlaceRules& rules, int axis) {
   return {static_cast<int>(std::ceil((-part.box.min()[axis] - kTolerance_mm) / rules.grid_mm)),
-          static_cast<int>(std::floor((rules.build_mm[axis] - part.box.max()[axis] + kTolerance_mm) /
-                                      rules.grid_mm))};
+          static_cast<int>(std::floor(
+              (rules.build_mm[axis] - part.box.max()[axis] + kTolerance_mm) / rules.grid_mm))};
 }
 
 // Positions at which the part is no further from the contents than it must be to lie beside them.
 Range near_contents(const TrayState& tray, const RotatedPart& part, const PlaceRules& rules,
                     int axis) {
   const double grid = rules.grid_mm;
-  return {static_cast<int>(std::floor(tray.contents.min()[axis] / grid)) -
-              part.reach_high[axis] - 2,
-          static_cast<int>(std::ceil(tray.contents.max()[axis] / grid)) -
-              part.reach_low[axis] + 2};
+  return {
+      static_cast<int>(std::floor(tray.contents.min()[axis] / grid)) - part.reach_high[axis] - 2,
+      static_cast<int>(std::ceil(tray.contents.max()[axis] / grid)) - part.reach_low[axis] + 2};
 }
 
 int floor_division(int value, int divisor) {
@@ -91,14 +90,16 @@ class Rating {
     double high = rules_.build_mm.z() - rotated_.box.max().z() + 2 * step * rules_.grid_mm;
     if (!std::isfinite(limit) || high <= low) return high;
     // The box grows least where the part lies within the contents' extent, or nearest to that.
-    const double inside = (tray_.contents.min().x() - rotated_.box.min().x()) / rules_.grid_mm / step;
-    const int before = std::clamp(static_cast<int>(std::floor(inside)), columns.first, columns.last);
+    const double inside =
+        (tray_.contents.min().x() - rotated_.box.min().x()) / rules_.grid_mm / step;
+    const int before =
+        std::clamp(static_cast<int>(std::floor(inside)), columns.first, columns.last);
     const int behind = std::clamp(before + 1, columns.first, columns.last);
     constexpr int kHalvings = 10;
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = (low + high) / 2;
-      const bool worth_it = bound(before * step, y, middle) <= limit ||
-                            bound(behind * step, y, middle) <= limit;
+      const bool worth_it =
+          bound(before * step, y, middle) <= limit || bound(behind * step, y, middle) <= limit;
       (worth_it ? low : high) = middle;
     }
     return high;
@@ -203,8 +204,7 @@ void rate_coarsely(const TrayState& tray, const Part& part, int rotation, const 
     const double limit = std::min(shortlist.limit(), own.limit());
     const Range row = rating.worth_trying(xs, y * step, step, limit);
     if (row.empty()) continue;
-    const float highest =
-        static_cast<float>(rating.highest_worth_it(row, y * step, step, limit));
+    const float highest = static_cast<float>(rating.highest_worth_it(row, y * step, step, limit));
     heights.resize(static_cast<std::size_t>(row.count()));
     fall(tray.field.coarse_upper, rotated.coarse_reach, row.first, y,
          static_cast<float>(rating.floor()), highest, heights);
@@ -216,8 +216,7 @@ void rate_coarsely(const TrayState& tray, const Part& part, int rotation, const 
       if (heights[i] > highest) continue;
       const double z = heights[i];
       const int x = row.first + static_cast<int>(i);
-      const double cost =
-          rules.cost->evaluate(rating.measure(x * step, y * step, z, sums[i]));
+      const double cost = rules.cost->evaluate(rating.measure(x * step, y * step, z, sums[i]));
       own.offer({cost, z, rotation, x, y});
     }
   }
@@ -233,10 +232,8 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
   const RotatedPart& rotated = (*part.rotations)[static_cast<std::size_t>(candidate.rotation)];
   const Ranges fine = fine_ranges(tray, rotated, rules);
   const int step = tray.field.coarse;
-  const Range xs =
-      intersection(fine.x, {(candidate.x - 1) * step, (candidate.x + 1) * step - 1});
-  const Range ys =
-      intersection(fine.y, {(candidate.y - 1) * step, (candidate.y + 1) * step - 1});
+  const Range xs = intersection(fine.x, {(candidate.x - 1) * step, (candidate.x + 1) * step - 1});
+  const Range ys = intersection(fine.y, {(candidate.y - 1) * step, (candidate.y + 1) * step - 1});
   const Rating rating(tray, part, rotated, rules);
   std::vector<float> heights;
   std::vector<float> sums;
@@ -245,9 +242,8 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
     const Range row = rating.worth_trying(xs, y, 1, limit);
     if (row.empty()) continue;
     const float floor = static_cast<float>(rating.floor());
-    const float highest = rules.on_plate_only
-                              ? floor
-                              : static_cast<float>(rating.highest_worth_it(row, y, 1, limit));
+    const float highest =
+        rules.on_plate_only ? floor : static_cast<float>(rating.highest_worth_it(row, y, 1, limit));
     heights.resize(static_cast<std::size_t>(row.count()));
     fall(tray.field.upper, rotated.reach, row.first, y, floor, highest, heights);
     if (*std::min_element(heights.begin(), heights.end()) > highest) continue;
@@ -259,7 +255,10 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
       const double z = heights[i] <= floor ? rating.floor() : heights[i];
       if (rating.too_high(z)) continue;
       const int x = row.first + static_cast<int>(i);
-      const Spot spot{candidate.rotation, x, y, z,
+      const Spot spot{candidate.rotation,
+                      x,
+                      y,
+                      z,
                       rules.cost->evaluate(rating.measure(x, y, z, sums[i])),
                       rating.added_support(z, sums[i])};
       if (!best || better(spot, *best)) best = spot;
@@ -297,8 +296,8 @@ std::optional<Spot> best_spot(const TrayState& tray, const Part& part, const Pla
   // Coarse heights do not tell what stands on the plate.
   if (rules.on_plate_only) return look_everywhere(tray, part, rules);
   // On an empty tray there is one position a rotation, so all of them are looked at.
-  const std::size_t candidates = tray.parts == 0 ? part.rotations->size()
-                                                 : static_cast<std::size_t>(rules.candidates);
+  const std::size_t candidates =
+      tray.parts == 0 ? part.rotations->size() : static_cast<std::size_t>(rules.candidates);
   Shortlist shortlist(candidates);
   for (int rotation = 0; rotation < static_cast<int>(part.rotations->size()); ++rotation)
     rate_coarsely(tray, part, rotation, rules, shortlist);

@@ -19,12 +19,12 @@ struct PlaceRules {
 };
 
 struct Spot {
-  int rotation = 0;            // index into Part::rotations
-  int x = 0;                   // cells of the fine grid
+  int rotation = 0;  // index into Part::rotations
+  int x = 0;         // cells of the fine grid
   int y = 0;
-  double z = 0;                // mm
-  double cost = 0;             // Cost::evaluate of the tray with the part on it
-  double support_mm3 = 0;      // what the part adds
+  double z = 0;            // mm
+  double cost = 0;         // Cost::evaluate of the tray with the part on it
+  double support_mm3 = 0;  // what the part adds
 };
 
 // Positions are first rated on the coarse grid, for all rotations; the best of them are then looked

@@ -57,8 +57,8 @@ RotationSet rotation_set(double step) {
     for (int j = 0; j < steps; ++j) {
       const Mat3 turn = turn_about_y(j * step) * turn_about_x(i * step);
       // The model direction that points up is the last row.
-      const bool repeated = std::any_of(
-          set.ways_up.begin(), set.ways_up.end(), [&turn](const Mat3& other) {
+      const bool repeated =
+          std::any_of(set.ways_up.begin(), set.ways_up.end(), [&turn](const Mat3& other) {
             return (other.row(2) - turn.row(2)).norm() < kSameDirection;
           });
       if (!repeated) set.ways_up.push_back(turn);

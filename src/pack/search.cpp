@@ -139,8 +139,8 @@ class MergeSearch {
     if (configuration.order.empty()) start = first_order(parts, packer, random_);
     start.cost = packer.start(start.order);
 
-    const TabuSettings settings{problem_.tabu_memory, problem_.tabu_patience,
-                                problem_.tabu_samples, random_.bits()};
+    const TabuSettings settings{problem_.tabu_memory, problem_.tabu_patience, problem_.tabu_samples,
+                                random_.bits()};
     OrderCost cost;
     cost.evaluate = [&packer](const Order& order, std::size_t first_change, double give_up) {
       return packer.evaluate(order, first_change, give_up);
@@ -183,13 +183,14 @@ class MergeSearch {
     box.extend(bounding_box(problem.items[static_cast<std::size_t>(item)].surface));
   const Vec3 size = box.sizes();
   const Vec3& build = problem.build_mm;
-  throw Error(Fault::kBadInput,
-              fmt::format("Part {} of model {} measures {:.1f} × {:.1f} × {:.1f} mm and fits the "
-                          "build volume of {:.1f} × {:.1f} × {:.1f} mm in no rotation",
-                          items.front() + 1,
-                          problem.items[static_cast<std::size_t>(items.front())].model + 1,
-                          size.x(), size.y(), size.z(), build.x(), build.y(), build.z()),
-              "Scale the model down, let it be divided into more parts, or choose a larger printer.");
+  throw Error(
+      Fault::kBadInput,
+      fmt::format("Part {} of model {} measures {:.1f} × {:.1f} × {:.1f} mm and fits the "
+                  "build volume of {:.1f} × {:.1f} × {:.1f} mm in no rotation",
+                  items.front() + 1,
+                  problem.items[static_cast<std::size_t>(items.front())].model + 1, size.x(),
+                  size.y(), size.z(), build.x(), build.y(), build.z()),
+      "Scale the model down, let it be divided into more parts, or choose a larger printer.");
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ namespace packmerger {
 // The rotation is turn_about_z(turn) * base.
 struct WayUp {
   Mat3 base = Mat3::Identity();
-  double turn = 0;                   // the cheapest one, radians
-  double cost = 0;                   // Cost::evaluate of the part alone on the plate
-  double support_mm3 = 0;            // V_s of the part alone
-  double inside_support_mm3 = 0;     // V_s between the part's own surfaces
+  double turn = 0;                // the cheapest one, radians
+  double cost = 0;                // Cost::evaluate of the part alone on the plate
+  double support_mm3 = 0;         // V_s of the part alone
+  double inside_support_mm3 = 0;  // V_s between the part's own surfaces
 };
 
 // The ways up in which the surfaces together fit the build volume, each in its cheapest turn,

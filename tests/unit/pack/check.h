@@ -48,8 +48,7 @@ inline double segment_distance(const Vec3& p, const Vec3& q, const Vec3& r, cons
     const Vec3 w = p - r;
     const double t = (b * v.dot(w) - c * u.dot(w)) / det;
     const double k = (a * v.dot(w) - b * u.dot(w)) / det;
-    if (t >= 0 && t <= 1 && k >= 0 && k <= 1)
-      best = std::min(best, (p + t * u - r - k * v).norm());
+    if (t >= 0 && t <= 1 && k >= 0 && k <= 1) best = std::min(best, (p + t * u - r - k * v).norm());
   }
   return best;
 }
@@ -121,7 +120,8 @@ inline void expect_rigid(const Pose& pose) {
 }
 
 // Everything that src/pack/pack.h promises, but for what only a second run can show.
-inline void expect_valid(const PackProblem& problem, const Packing& packing, double column_step_mm) {
+inline void expect_valid(const PackProblem& problem, const Packing& packing,
+                         double column_step_mm) {
   std::multiset<int> items;
   std::vector<std::vector<Triangle>> placed;
   for (const PlacedPart& part : packing.parts) {

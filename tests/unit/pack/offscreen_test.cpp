@@ -98,7 +98,9 @@ TEST(Draw, MeshHidesWhatLiesBehindItAndTheBackgroundStays) {
   camera.eye = Vec3(0, -80, 0);
   const Image image = draw(scene, camera, 120, 90, 2);
   ASSERT_EQ(image.rgba.size(), 120U * 90U * 4U);
-  const auto at = [&](int x, int y) { return &image.rgba[static_cast<std::size_t>(4 * (y * 120 + x))]; };
+  const auto at = [&](int x, int y) {
+    return &image.rgba[static_cast<std::size_t>(4 * (y * 120 + x))];
+  };
   EXPECT_GT(at(60, 45)[0], 100);
   EXPECT_EQ(at(60, 45)[1], 0);
   EXPECT_EQ(at(2, 2)[2], 255);

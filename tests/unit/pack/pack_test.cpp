@@ -25,18 +25,28 @@ Mesh random_shape(Random& random) {
   };
   Mesh mesh;
   switch (random.below(5)) {
-    case 0: mesh = shapes::box(Vec3(size(2, 25), size(2, 25), size(2, 25))); break;
-    case 1: mesh = shapes::tetrahedron(size(5, 30)); break;
-    case 2: mesh = shapes::l_shape(size(12, 25), size(2, 6), size(3, 20)); break;
-    case 3: mesh = shapes::cup(size(6, 14), size(5, 25), size(1.5, 3), 12); break;
-    default: mesh = shapes::bowl(size(8, 16), size(1, 3), 12); break;
+    case 0:
+      mesh = shapes::box(Vec3(size(2, 25), size(2, 25), size(2, 25)));
+      break;
+    case 1:
+      mesh = shapes::tetrahedron(size(5, 30));
+      break;
+    case 2:
+      mesh = shapes::l_shape(size(12, 25), size(2, 6), size(3, 20));
+      break;
+    case 3:
+      mesh = shapes::cup(size(6, 14), size(5, 25), size(1.5, 3), 12);
+      break;
+    default:
+      mesh = shapes::bowl(size(8, 16), size(1, 3), 12);
+      break;
   }
   // Models lie anywhere and any way round in their files.
   Pose pose = Pose::Identity();
   const Vec3 axis(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5);
   if (random.below(2) == 0)
-    pose.linear() = Eigen::AngleAxisd(size(0, 6), (axis + Vec3(0, 0, 1e-3)).normalized())
-                        .toRotationMatrix();
+    pose.linear() =
+        Eigen::AngleAxisd(size(0, 6), (axis + Vec3(0, 0, 1e-3)).normalized()).toRotationMatrix();
   pose.translation() = 200 * axis;
   return transformed(mesh, pose);
 }
@@ -164,8 +174,7 @@ TEST(Pack, PartsAsLargeAsTheTrayGetOneEach) {
 
 TEST(Pack, APartThatFitsAslantOnlyIsTurned) {
   // 66 mm long in a 50 × 50 mm tray whose diagonal is 70.7 mm; 90° steps alone would refuse it.
-  const PackProblem problem =
-      problem_of({shapes::box(Vec3(66, 2, 2))}, Vec3(50, 50, 10));
+  const PackProblem problem = problem_of({shapes::box(Vec3(66, 2, 2))}, Vec3(50, 50, 10));
   check::expect_valid(problem, pack(problem, {}), 0.5);
 }
 
@@ -213,10 +222,10 @@ TEST(Pack, NotWorseThanSideBySide) {
 }
 
 TEST(Pack, MergesOnlyWhatMayBeMerged) {
-  PackProblem problem = problem_of({shapes::box(Vec3(20, 20, 20)),
-                                    shapes::box(Vec3(20, 20, 20), Vec3(20, 0, 0)),
-                                    shapes::box(Vec3(20, 20, 20), Vec3(40, 0, 0))},
-                                   Vec3(100, 100, 100));
+  PackProblem problem =
+      problem_of({shapes::box(Vec3(20, 20, 20)), shapes::box(Vec3(20, 20, 20), Vec3(20, 0, 0)),
+                  shapes::box(Vec3(20, 20, 20), Vec3(40, 0, 0))},
+                 Vec3(100, 100, 100));
   problem.items[0].model = problem.items[1].model = 0;
   problem.items[2].model = 1;
   problem.edges = {{0, 1, 400}, {1, 2, 400}};

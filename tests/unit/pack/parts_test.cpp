@@ -127,9 +127,9 @@ void expect_bounds(const DepthMaps& maps, const Mesh& mesh, double grid, Random&
 RC_GTEST_PROP(DepthMaps, BoundTheSurfaceInEveryCell, (std::uint64_t seed)) {
   Random random(seed);
   const double grid = 0.5 + random.unit();
-  const Mesh mesh = turned(random.below(2) == 0 ? shapes::l_shape(20, 3, 11)
-                                                : shapes::bowl(13, 1.5, 12),
-                           any_rotation(random));
+  const Mesh mesh =
+      turned(random.below(2) == 0 ? shapes::l_shape(20, 3, 11) : shapes::bowl(13, 1.5, 12),
+             any_rotation(random));
   DepthRenderer renderer;
   const DepthMaps maps = draw_depth_maps(renderer, to_soup(mesh), grid, 0);
   expect_bounds(maps, mesh, grid, random);
@@ -175,7 +175,8 @@ TEST(DepthMaps, UnitedMapsAreTheMapsOfTheUnion) {
   const DepthMaps map_a = draw_depth_maps(renderer, to_soup(a), 1, 0);
   const DepthMaps map_b = draw_depth_maps(renderer, to_soup(b), 1, 0);
   const DepthMaps both = united_maps({&map_a, &map_b});
-  const DepthMaps drawn = draw_depth_maps(renderer, to_soup(united(std::vector<const Mesh*>{&a, &b})), 1, 0);
+  const DepthMaps drawn =
+      draw_depth_maps(renderer, to_soup(united(std::vector<const Mesh*>{&a, &b})), 1, 0);
   ASSERT_EQ(both.low.size(), drawn.low.size());
   for (std::size_t i = 0; i < both.low.size(); ++i) {
     EXPECT_TRUE(both.low[i] == drawn.low[i] || std::abs(both.low[i] - drawn.low[i]) < 1e-4);
@@ -194,14 +195,15 @@ TEST(ExactGap, KnownDistances) {
   EXPECT_EQ(least_gap_mm({shapes::box(Vec3(2, 2, 2), Vec3(4, 4, 4)), a}), 0);
   EXPECT_GE(least_gap_mm({a, shapes::box(Vec3(5, 5, 5), Vec3(40, 0, 0))}, 2), 2);
   // In a cup, but not in its matter.
-  EXPECT_NEAR(least_gap_mm({shapes::cup(10, 20, 2, 48), shapes::box(Vec3(2, 2, 2), Vec3(-1, -1, 5))}),
-              3, 1e-9);
+  EXPECT_NEAR(
+      least_gap_mm({shapes::cup(10, 20, 2, 48), shapes::box(Vec3(2, 2, 2), Vec3(-1, -1, 5))}), 3,
+      1e-9);
 }
 
 RC_GTEST_PROP(ExactGap, AgreesWithBruteForce, (std::uint64_t seed)) {
   Random random(seed);
-  PackProblem problem = shapes::problem_of({shapes::l_shape(10, 2, 5), shapes::tetrahedron(8)},
-                                           Vec3(100, 100, 100));
+  PackProblem problem =
+      shapes::problem_of({shapes::l_shape(10, 2, 5), shapes::tetrahedron(8)}, Vec3(100, 100, 100));
   PlacedPart a{{0}, Pose::Identity(), 0};
   PlacedPart b{{1}, Pose::Identity(), 0};
   a.pose.linear() = any_rotation(random);
@@ -258,10 +260,9 @@ TEST(Tabu, EndsWithoutPatienceAndWithNothingToSwap) {
 }
 
 TEST(Merge, PairsFollowTheGraphAndStayWithinAModel) {
-  PackProblem problem = shapes::problem_of(
-      {shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1)),
-       shapes::box(Vec3(1, 1, 1))},
-      Vec3(10, 10, 10));
+  PackProblem problem = shapes::problem_of({shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1)),
+                                            shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1))},
+                                           Vec3(10, 10, 10));
   for (PackItem& item : problem.items) item.model = 0;
   problem.items[3].model = 1;
   problem.edges = {{0, 1, 1}, {0, 2, 1}, {1, 2, 1}, {2, 3, 1}};

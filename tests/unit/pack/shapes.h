@@ -94,8 +94,13 @@ inline Mesh sphere(double radius, int sides) {
 
 // Opens upwards; stands on z = 0.
 inline Mesh cup(double radius, double height, double wall, int sides = 24) {
-  return revolved({{0, 0}, {radius, 0}, {radius, height}, {radius - wall, height},
-                   {radius - wall, wall}, {0, wall}}, sides);
+  return revolved({{0, 0},
+                   {radius, 0},
+                   {radius, height},
+                   {radius - wall, height},
+                   {radius - wall, wall},
+                   {0, wall}},
+                  sides);
 }
 
 // Half of a spherical shell, open upwards, lowest point at z = 0.
