@@ -19,6 +19,7 @@ namespace {
 constexpr double kCreaseAngle = 40 * std::numbers::pi / 180;
 constexpr double kTolerance_mm = 0.08;        // sampled; the promise is 0.1
 constexpr double kLeastVolumeFraction = 0.1;  // of a tetrahedron's volume at the start
+constexpr double kVolumeFraction = 5e-4;      // of V_o, that all moves together may add or take
 constexpr int kHalvings = 3;                  // of a step that is too long
 
 // For every point on a cut the points its position is averaged from.
@@ -105,6 +106,7 @@ class Smoother {
       : mesh_(mesh), stars_(mesh), walk_(mesh, kCreaseAngle), face_of_(mesh.points.size(), -1) {
     for (int t = 0; t < mesh.count(); ++t)
       least_volumes_.push_back(kLeastVolumeFraction * mesh.volume_mm3(t));
+    gain_limit_mm3_ = kVolumeFraction * total_volume_mm3(mesh);
     for (std::size_t point = 0; point < mesh.points.size(); ++point)
       if (const auto faces = walk_.faces_at(static_cast<int>(point)); !faces.empty())
         face_of_[point] = faces.front();
@@ -115,12 +117,17 @@ class Smoother {
     const bool on_surface = face_of_[point] >= 0;
     if (on_surface && walk_.freedom(point) == Freedom::kNone) return;
     const Vec3 start = mesh_.points[point];
+    const double volume = star_volume_mm3(point);
     double step = 1;
     for (int halving = 0; halving <= kHalvings; ++halving, step /= 2) {
       const SurfaceWalk::Place place = allowed_place(point, start + step * (target - start));
       mesh_.points[point] = place.point;
-      if (volumes_are_kept(point) && (!on_surface || surface_is_kept(point, place))) {
+      if (!volumes_are_kept(point)) continue;
+      const double gained = on_surface ? star_volume_mm3(point) - volume : 0;
+      if (std::abs(gained_mm3_ + gained) > gain_limit_mm3_) continue;
+      if (!on_surface || surface_is_kept(point, place)) {
         face_of_[point] = place.face;
+        gained_mm3_ += gained;
         return;
       }
     }
@@ -133,6 +140,12 @@ class Smoother {
     if (walk_.freedom(point) == Freedom::kCrease)
       return {walk_.nearest_on_crease(wish, point), face_of_[point]};
     return walk_.nearest(wish, face_of_[point]);
+  }
+
+  double star_volume_mm3(int point) const {
+    double sum = 0;
+    for (const int t : stars_.of(point)) sum += mesh_.volume_mm3(t);
+    return sum;
   }
 
   bool volumes_are_kept(int point) const {
@@ -206,6 +219,8 @@ class Smoother {
   std::vector<int>
       face_of_;  // the face of the surface as it was that a boundary point lies on, or -1
   std::vector<double> least_volumes_;
+  double gain_limit_mm3_ = 0;
+  double gained_mm3_ = 0;  // by the moves so far: the surface is not flat
   std::vector<int> ring_;
 };
 
