@@ -22,7 +22,7 @@ namespace {
 // Least wall that is accepted after sampling and coarsening, as a fraction of wall_mm.
 constexpr double kLeastWall = 0.9;
 // Coarsening may move the cavity's surface by this fraction of the wall.
-constexpr double kCoarsening = 0.05;
+constexpr double kCoarsening = 0.03;
 // Longest edge of a cavity's surface, in walls: triangles much longer than the wall is thick make
 // flat tetrahedra.
 constexpr double kLongestEdge = 2;
@@ -63,7 +63,7 @@ TriangleSoup pushed_to_depth(TriangleSoup soup, const SurfaceQuery& outer, doubl
 std::optional<TriangleSoup> coarse_boundary(const TriangleSoup& fine, const SurfaceQuery& outer,
                                             double wall_mm) {
   const TriangleSoup pushed = pushed_to_depth(fine, outer, wall_mm);
-  for (const double fraction : {1.0, 0.3, 0.1}) {
+  for (const double fraction : {1.0, 0.4, 0.1}) {
     TriangleSoup coarse =
         coarsened(pushed, fraction * kCoarsening * wall_mm, kLongestEdge * wall_mm);
     if (is_good(coarse, outer, wall_mm)) return coarse;

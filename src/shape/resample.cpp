@@ -1,14 +1,19 @@
 #include "shape/resample.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "shape/coarsen.h"
 #include "shape/distance_grid.h"
+#include "shape/outer_hull.h"
 #include "shape/repair.h"
 #include "shape/soup.h"
 #include "shape/surface_query.h"
@@ -16,13 +21,12 @@
 namespace packmerger {
 namespace {
 
-// The first grid's voxel, and how much finer each next one is.
-constexpr double kFirstVoxel = 0.7;
-constexpr double kFiner = 0.7;
-constexpr int kRounds = 4;
-constexpr double kBand = 3;  // voxels on both sides
+// Voxels that are tried, in tolerances. Since points are moved back to the model, even the first is
+// fine enough where there are no narrow gaps and sharp edges.
+constexpr std::array<double, 5> kVoxels = {2, 1.2, 0.7, 0.45, 0.3};
+constexpr double kBand = 2;  // voxels on both sides
 constexpr double kMaxVoxels = 6e7;
-constexpr double kCoarsening = 0.3;  // of the tolerance
+constexpr double kCoarsening = 0.2;    // of the tolerance
 constexpr double kLongestEdge = 0.04;  // of the diagonal
 // Components smaller than this many voxels are grains of the grid, not of the model.
 constexpr double kGrain = 8;
@@ -82,43 +86,95 @@ std::optional<TriangleSoup> without_grains(const TriangleSoup& soup, double voxe
   return kept;
 }
 
-// The coarsest of a few attempts that does not intersect itself.
-Mesh coarse(const TriangleSoup& fine, double tolerance_mm, double max_edge_mm) {
-  double tolerance = kCoarsening * tolerance_mm;
-  for (int i = 0; i < 2; ++i, tolerance /= 3) {
-    Mesh mesh = closed_mesh(coarsened(fine, tolerance, max_edge_mm));
-    if (!self_intersects(mesh)) return mesh;
+// The grid rounds off what is sharp; points go back to the model, but not to another place of it.
+TriangleSoup moved_back(TriangleSoup soup, const SurfaceQuery& model, double voxel_mm) {
+  parallel_for(soup.points.size(), [&](std::size_t i) {
+    const SurfaceQuery::Nearest nearest = model.nearest(soup.points[i]);
+    if (nearest.distance_mm < voxel_mm / 2) soup.points[i] = nearest.point;
+  });
+  return soup;
+}
+
+// The coarsest of a few attempts that does not intersect itself; empty when all do.
+std::optional<Mesh> clean(const TriangleSoup& fine, const SurfaceQuery& model, double voxel_mm,
+                          double tolerance_mm, double max_edge_mm) {
+  for (const bool move : {true, false}) {
+    const TriangleSoup soup = move ? moved_back(fine, model, voxel_mm) : fine;
+    for (const double fraction : {1.0, 0.3}) {
+      Mesh mesh = closed_mesh(coarsened(soup, fraction * kCoarsening * tolerance_mm, max_edge_mm));
+      if (!self_intersects(mesh)) return mesh;
+    }
   }
-  return closed_mesh(fine);
+  return std::nullopt;
+}
+
+// Where surfaces are compared, and how closely.
+struct Measure {
+  const TriangleSoup& model;
+  const SurfaceQuery& query;
+  double step_mm;
+  double tolerance_mm;
+  double best_mm = std::numeric_limits<double>::infinity();
+
+  // The surface with its deviation, if it may stand in for the model.
+  std::optional<Resampled> accepted(Mesh surface) {
+    const double found = deviation(model, query, to_soup(surface), step_mm);
+    best_mm = std::min(best_mm, found);
+    if (found > tolerance_mm) return std::nullopt;
+    return Resampled{std::move(surface), found};
+  }
+};
+
+// The exact outside, coarsened a little where rounding made its pieces cross again.
+std::optional<Resampled> from_hull(const Mesh& mesh, double max_edge_mm, Measure& measure,
+                                   const Progress& progress) {
+  const auto hull = outer_hull(mesh, progress);
+  if (!hull) return std::nullopt;
+  if (!self_intersects(*hull))
+    if (auto result = measure.accepted(*hull)) return result;
+  for (const double fraction : {0.05, 0.15, 0.3}) {
+    Mesh coarse =
+        closed_mesh(coarsened(to_soup(*hull), fraction * measure.tolerance_mm, max_edge_mm));
+    if (self_intersects(coarse)) continue;
+    if (auto result = measure.accepted(std::move(coarse))) return result;
+  }
+  return std::nullopt;
+}
+
+std::optional<Resampled> from_grid(const Mesh& mesh, double max_edge_mm, Measure& measure,
+                                   const Progress& progress) {
+  const double area = area_mm2(mesh);
+  for (std::size_t round = 0; round < kVoxels.size(); ++round) {
+    progress.report("re-sampling", static_cast<double>(round + 1) / (kVoxels.size() + 1));
+    const double voxel = kVoxels[round] * measure.tolerance_mm;
+    if (area / (voxel * voxel) * (2 * kBand + 4) > kMaxVoxels) break;
+    DistanceGrid grid(mesh, voxel, kBand * voxel, kBand * voxel, progress);
+    const auto fine = without_grains(grid.level(0, progress), voxel);
+    if (!fine) continue;
+    auto surface = clean(*fine, measure.query, voxel, measure.tolerance_mm, max_edge_mm);
+    if (!surface) continue;
+    progress.check();
+    if (auto result = measure.accepted(std::move(*surface))) return result;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 Resampled resample(const Mesh& mesh, double tolerance_mm, const Progress& progress) {
+  progress.report("re-sampling", 0);
   const TriangleSoup model = to_soup(mesh);
   const SurfaceQuery query(model);
   const double size = bounding_box(mesh).diagonal().norm();
-  const double step = std::max(tolerance_mm, size / 100);
-  const double area = area_mm2(mesh);
-  double voxel = kFirstVoxel * tolerance_mm;
-  double best = 0;
-  for (int round = 0; round < kRounds; ++round, voxel *= kFiner) {
-    progress.report("re-sampling", static_cast<double>(round) / kRounds);
-    if (area / (voxel * voxel) * (2 * kBand + 4) > kMaxVoxels) break;
-    DistanceGrid grid(mesh, voxel, kBand * voxel, kBand * voxel, progress);
-    const auto fine = without_grains(grid.level(0, progress), voxel);
-    if (!fine) continue;
-    Resampled result;
-    result.surface = coarse(*fine, tolerance_mm, kLongestEdge * size);
-    progress.check();
-    result.deviation_mm = deviation(model, query, to_soup(result.surface), step);
-    if (result.deviation_mm <= tolerance_mm && !self_intersects(result.surface)) return result;
-    best = result.deviation_mm;
-  }
+  Measure measure{model, query, std::max(tolerance_mm, size / 100), tolerance_mm};
+  if (auto result = from_hull(mesh, kLongestEdge * size, measure, progress)) return std::move(*result);
+  if (auto result = from_grid(mesh, kLongestEdge * size, measure, progress)) return std::move(*result);
   throw Error(Fault::kBadInput,
               "The surface intersects itself and could not be re-sampled within " +
                   std::to_string(tolerance_mm) + " mm" +
-                  (best > 0 ? " (it deviates by " + std::to_string(best) + " mm)" : ""),
+                  (std::isfinite(measure.best_mm)
+                       ? " (it deviates by " + std::to_string(measure.best_mm) + " mm)"
+                       : ""),
               "Raise resample_tolerance_mm, or repair the model in a mesh editor.");
 }
 

@@ -12,8 +12,10 @@ struct Resampled {
 };
 
 // A closed, manifold surface that does not intersect itself, around everything the model encloses
-// (its winding number is not zero): a level of a fine distance grid, coarsened. The grid is made
-// finer until the measured deviation is at most tolerance_mm.
+// (its winding number is not zero). First the model's own triangles are cut where they cross and the
+// outer pieces kept, which changes next to nothing; where that fails a level of a distance grid is
+// taken, its points moved back to the model, and the grid made finer until the measured deviation is
+// at most tolerance_mm.
 //
 // The deviation is the largest distance found from the new surface to the model and from the
 // outside of the model to the new surface, at points spread over both no further apart than

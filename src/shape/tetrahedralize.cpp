@@ -29,12 +29,12 @@ constexpr std::uint64_t kMaxMemoryBytes =
     std::uint64_t{8} << 30;
 #endif
 constexpr double kVolumeTolerance = 1e-3;
-// Edges of the surface are halved until a regular tetrahedron on them would hold this share of what
-// one may hold: the wall is thinner than such a tetrahedron is high.
-constexpr double kSurfaceShare = 1.0;
+// A cluster of fewer tetrahedra would have no smooth border.
+constexpr double kPerCluster = 100;
 
+// A regular tetrahedron on longer edges would be too large.
 double longest_surface_edge_mm(double max_tetrahedron_mm3) {
-  return std::cbrt(kSurfaceShare * max_tetrahedron_mm3 * 6 * std::sqrt(2.0));
+  return std::cbrt(max_tetrahedron_mm3 * 6 * std::sqrt(2.0));
 }
 
 TriangleSoup turned(TriangleSoup soup) {
@@ -136,7 +136,9 @@ bool all_positive(const TetMesh& mesh) {
 std::optional<TetMesh> tetrahedralize(const Shell& shell, const ShapeSettings& settings,
                                       const Progress& progress) {
   progress.report("making tetrahedra", 0);
-  const double max_volume = settings.max_tetrahedron_fraction * shell.volume_mm3;
+  const double max_volume =
+      shell.volume_mm3 *
+      std::min(settings.max_tetrahedron_fraction, 1 / (kPerCluster * std::max(1, settings.clusters)));
   auto output = run_tetgen(input_for(shell, settings, max_volume), progress);
   if (!output) return std::nullopt;
   progress.report("making tetrahedra", 0.8);

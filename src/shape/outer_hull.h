@@ -1,0 +1,17 @@
+// The outside of a surface that crosses itself, exactly.
+#pragma once
+
+#include <optional>
+
+#include "base/progress.h"
+#include "model/mesh.h"
+
+namespace packmerger {
+
+// Cuts the triangles along the curves in which they cross, and keeps the pieces that separate what
+// the surface winds around from what it does not. Points off those curves stay where they are; those
+// on them are rounded to doubles. The result is made closed and manifold again.
+// mesh: closed. Nullopt where CGAL cannot cut it or the pieces do not close: an ordinary outcome.
+std::optional<Mesh> outer_hull(const Mesh& mesh, const Progress& progress);
+
+}  // namespace packmerger

@@ -1,0 +1,139 @@
+#include "shape/hollow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "fixtures/models.h"
+#include "shape/repair.h"
+#include "shape/soup.h"
+#include "shape/surface_query.h"
+
+namespace packmerger {
+namespace {
+
+bool warned(const Warnings& warnings, const std::string& code) {
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const Warning& warning) { return warning.code == code; });
+}
+
+Shell hollowed(const TriangleSoup& soup, Warnings& warnings, const ShapeSettings& settings = {}) {
+  return hollow(closed_mesh(soup), settings, warnings, Progress());
+}
+
+void expect_good_cavities(const Shell& shell, double wall_mm) {
+  ASSERT_EQ(shell.cavities.size(), shell.cavity_points.size());
+  const SurfaceQuery outer(shell.outer);
+  double volume = volume_mm3(shell.outer);
+  for (std::size_t i = 0; i < shell.cavities.size(); ++i) {
+    const Mesh& cavity = shell.cavities[i];
+    const TriangleSoup soup = to_soup(cavity);
+    EXPECT_TRUE(is_closed_manifold(soup));
+    EXPECT_EQ(components_of(soup).count, 1);
+    EXPECT_FALSE(self_intersects(cavity));
+    EXPECT_LT(volume_mm3(cavity), 0) << "normals point into the cavity";
+    EXPECT_EQ(SurfaceQuery(soup).winding_number(shell.cavity_points[i]), -1);
+    volume += volume_mm3(cavity);
+    for (const auto& [a, b, c] : soup.triangles) {
+      const Vec3 middle = (soup.points[a] + soup.points[b] + soup.points[c]) / 3;
+      EXPECT_GE(outer.distance_mm(middle), 0.9 * wall_mm);
+      EXPECT_EQ(outer.winding_number(middle), 1);
+    }
+    for (const Vec3& point : soup.points) EXPECT_GE(outer.distance_mm(point), 0.9 * wall_mm);
+  }
+  EXPECT_NEAR(shell.volume_mm3, volume, 1e-6 * std::abs(volume));
+}
+
+TEST(Hollow, CubeHasTheWallItIsTold) {
+  Warnings warnings;
+  const Shell shell = hollowed(fixtures::cube(40), warnings);
+  expect_good_cavities(shell, 3);
+  ASSERT_EQ(shell.cavities.size(), 1u);
+  EXPECT_NEAR(-volume_mm3(shell.cavities[0]), 34 * 34 * 34, 0.01 * 34 * 34 * 34);
+  EXPECT_LT(shell.cavities[0].n_faces(), 2000u) << "flat faces need few triangles";
+  EXPECT_TRUE(warned(warnings, "sealed_cavity"));
+  EXPECT_FALSE(warned(warnings, "thin_features"));
+}
+
+TEST(Hollow, SphereAndTorus) {
+  Warnings warnings;
+  const Shell ball = hollowed(fixtures::sphere(20, 4), warnings);
+  expect_good_cavities(ball, 3);
+  EXPECT_NEAR(-volume_mm3(ball.cavities.at(0)), 4.0 / 3 * 3.14159 * 17 * 17 * 17, 400);
+  const Shell ring = hollowed(fixtures::torus(30, 10, 60, 30), warnings);
+  expect_good_cavities(ring, 3);
+  EXPECT_EQ(ring.cavities.size(), 1u);
+}
+
+TEST(Hollow, TooThinIsNotAnError) {
+  Warnings warnings;
+  const Shell shell = hollowed(fixtures::thin_plate(50, 4), warnings);
+  EXPECT_TRUE(shell.cavities.empty());
+  EXPECT_NEAR(shell.volume_mm3, 50 * 50 * 4, 1e-6);
+  EXPECT_FALSE(warned(warnings, "sealed_cavity"));
+  EXPECT_TRUE(warned(warnings, "thin_features"));
+}
+
+TEST(Hollow, SmallCavitiesStaySolid) {
+  Warnings warnings;
+  ShapeSettings settings;
+  settings.min_cavity_mm3 = 1e5;
+  EXPECT_TRUE(hollowed(fixtures::cube(40), warnings, settings).cavities.empty());
+}
+
+TEST(Hollow, OwnCavityWhoseWallWouldFloatJoinsTheNewOne) {
+  Warnings warnings;
+  const Shell shell = hollowed(fixtures::nested_cubes(60, 20), warnings);
+  expect_good_cavities(shell, 3);
+  EXPECT_EQ(shell.cavities.size(), 1u);
+  EXPECT_EQ(components_of(to_soup(shell.outer)).count, 1);
+}
+
+TEST(Hollow, OwnCavityStaysWhereThereIsNoRoom) {
+  Warnings warnings;
+  const Shell shell = hollowed(fixtures::nested_cubes(40, 30), warnings);
+  EXPECT_TRUE(shell.cavities.empty());
+  EXPECT_EQ(components_of(to_soup(shell.outer)).count, 2);
+  EXPECT_NEAR(shell.volume_mm3, 40 * 40 * 40 - 30 * 30 * 30, 1e-6);
+}
+
+TEST(Hollow, SameBytesOnOneAndTwoThreads) {
+  const TriangleSoup model = fixtures::blob(60, 4);
+  const auto with_threads = [&](std::size_t threads) {
+    const ThreadLimit limit(threads);
+    Warnings warnings;
+    return hollowed(model, warnings);
+  };
+  const Shell one = with_threads(1);
+  const Shell two = with_threads(2);
+  expect_good_cavities(one, 3);
+  ASSERT_EQ(one.cavities.size(), two.cavities.size());
+  for (std::size_t i = 0; i < one.cavities.size(); ++i) {
+    EXPECT_EQ(to_soup(one.cavities[i]).points, to_soup(two.cavities[i]).points);
+    EXPECT_EQ(to_soup(one.cavities[i]).triangles, to_soup(two.cavities[i]).triangles);
+  }
+}
+
+TEST(Hollow, RefusesAGridWithoutBounds) {
+  Warnings warnings;
+  ShapeSettings settings;
+  settings.voxel_mm = 0.001;
+  EXPECT_THROW(hollowed(fixtures::cube(100), warnings, settings), Error);
+}
+
+TEST(Hollow, RealModelsKeepTheWall) {
+  for (const char* file : {"spot.obj", "rocker-arm.obj"}) {
+    PACKMERGER_TEST_MODEL(soup, file);
+    Warnings warnings;
+    const Shell shell = hollowed(fixtures::scaled_to(soup, 100), warnings);
+    expect_good_cavities(shell, 3);
+    EXPECT_FALSE(shell.cavities.empty());
+  }
+}
+
+}  // namespace
+}  // namespace packmerger

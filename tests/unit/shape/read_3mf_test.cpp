@@ -1,0 +1,128 @@
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "fixtures/models.h"
+#include "shape/read_model.h"
+#include "shape/soup.h"
+#include "unit/shape/written.h"
+
+namespace packmerger {
+namespace {
+
+using testing::HasSubstr;
+using written::mesh_xml;
+using written::three_mf;
+
+TriangleSoup read(const std::string& bytes) { return read_model_bytes(bytes, "", Progress()).soup; }
+
+std::string refusal(const std::string& bytes) {
+  try {
+    read(bytes);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kBadInput);
+    EXPECT_FALSE(error.hint().empty());
+    return error.what();
+  }
+  ADD_FAILURE() << "was accepted";
+  return "";
+}
+
+std::string cube_object(const std::string& attributes) {
+  return "<object " + attributes + ">" + mesh_xml(fixtures::cube(1)) + "</object>";
+}
+
+TEST(Read3mf, UnitHoldsForVerticesAndTranslations) {
+  const TriangleSoup soup = read(three_mf("unit=\"inch\"", cube_object("id=\"1\""),
+                                          "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>"));
+  const Box3 box = bounding_box(soup);
+  EXPECT_NEAR(box.min().x(), 50.8, 1e-9);
+  EXPECT_NEAR(box.max().x(), 76.2, 1e-9);
+  EXPECT_NEAR(box.max().y(), 25.4, 1e-9);
+}
+
+TEST(Read3mf, TransformsNestOverComponents) {
+  // The component moves by 10 in x, then the item turns x to y: 3MF multiplies rows by matrices.
+  const std::string resources =
+      cube_object("id=\"1\"") +
+      "<object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>"
+      "</components></object>";
+  const Box3 box = bounding_box(
+      read(three_mf("", resources, "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"/>")));
+  EXPECT_TRUE(box.min().isApprox(Vec3(-1, 10, 5), 1e-9)) << box.min().transpose();
+  EXPECT_TRUE(box.max().isApprox(Vec3(0, 11, 6), 1e-9)) << box.max().transpose();
+}
+
+TEST(Read3mf, MirroredObjectsStayOutward) {
+  const TriangleSoup soup = read(three_mf(
+      "", cube_object("id=\"1\""), "<item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>"));
+  EXPECT_NEAR(signed_volume_mm3(soup), 1, 1e-12);
+}
+
+TEST(Read3mf, LeavesOutSupportAndWhatIsNotPrinted) {
+  const std::string resources =
+      cube_object("id=\"1\"") + cube_object("id=\"2\" type=\"support\"") + cube_object("id=\"3\"");
+  const TriangleSoup soup = read(three_mf(
+      "", resources, "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\" printable=\"0\"/>"));
+  EXPECT_EQ(soup.triangles.size(), 12u);
+}
+
+TEST(Read3mf, FindsTheModelPartByItsRelationship) {
+  EXPECT_EQ(read(three_mf("", cube_object("id=\"1\""), "<item objectid=\"1\"/>", "odd/name.model"))
+                .triangles.size(),
+            12u);
+}
+
+TEST(Read3mf, NamesThatLeaveTheArchiveAreNotThere) {
+  const std::string relations =
+      "<Relationships><Relationship Target=\"/../../../etc/passwd\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  EXPECT_THAT(refusal(written::zipped({{"_rels/.rels", relations}})), HasSubstr("no 3D model part"));
+}
+
+TEST(Read3mf, RefusesCyclesAndEndlessDoubling) {
+  const std::string cycle =
+      "<object id=\"1\"><components><component objectid=\"2\"/></components></object>"
+      "<object id=\"2\"><components><component objectid=\"1\"/></components></object>";
+  EXPECT_THAT(refusal(three_mf("", cycle, "<item objectid=\"1\"/>")), HasSubstr("contains itself"));
+
+  std::string doubling = "<object id=\"0\"><mesh/></object>";
+  for (int i = 1; i < 60; ++i) {
+    const std::string component = "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
+    doubling += "<object id=\"" + std::to_string(i) + "\"><components>" + component + component +
+                "</components></object>";
+  }
+  EXPECT_THAT(refusal(three_mf("", doubling, "<item objectid=\"59\"/>")), HasSubstr("without end"));
+}
+
+TEST(Read3mf, RefusesDanglingAndDoubledIds) {
+  refusal(three_mf("", cube_object("id=\"1\""), "<item objectid=\"7\"/>"));
+  refusal(three_mf("", cube_object("id=\"1\"") + cube_object("id=\"1\""), "<item objectid=\"1\"/>"));
+}
+
+TEST(Read3mf, RefusesBadTransformsAndUnits) {
+  for (const char* transform : {"1 0 0", "1 0 0 0 1 0 0 0 1 0 0 nan", "0 0 0 0 0 0 0 0 0 0 0 0",
+                                "a b c d e f g h i j k l", "nan 0 0 0 1 0 0 0 1 0 0 0"})
+    refusal(three_mf("", cube_object("id=\"1\""),
+                     "<item objectid=\"1\" transform=\"" + std::string(transform) + "\"/>"));
+  refusal(three_mf("unit=\"parsec\"", cube_object("id=\"1\""), "<item objectid=\"1\"/>"));
+}
+
+TEST(Read3mf, SaysWhichExtensionItDoesNotSupport) {
+  EXPECT_THAT(refusal(three_mf("", cube_object("id=\"1\""),
+                               "<item objectid=\"1\" p:path=\"/3D/other.model\"/>")),
+              HasSubstr("p:path"));
+  EXPECT_THAT(refusal(three_mf("requiredextensions=\"b\" xmlns:b=\"urn:beams\"",
+                               cube_object("id=\"1\""), "<item objectid=\"1\"/>")),
+              HasSubstr("urn:beams"));
+}
+
+TEST(Read3mf, StopsInflatingABomb) {
+  const std::string bomb(std::size_t{64} << 20, ' ');
+  EXPECT_THAT(refusal(written::zipped({{"3D/3dmodel.model", bomb}})), HasSubstr("implausible size"));
+}
+
+}  // namespace
+}  // namespace packmerger

@@ -1,0 +1,251 @@
+#include "shape/read_model.h"
+
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "base/error.h"
+#include "fixtures/models.h"
+#include "shape/soup.h"
+#include "unit/shape/written.h"
+
+namespace packmerger {
+namespace {
+
+using testing::HasSubstr;
+using written::PlyCoding;
+
+ModelFile read(const std::string& bytes, const std::string& extension = "") {
+  return read_model_bytes(bytes, extension, Progress());
+}
+
+Error refusal(const std::string& bytes, const std::string& extension = "") {
+  try {
+    read(bytes, extension);
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "was accepted";
+  return Error(Fault::kInternal, "", "");
+}
+
+void expect_bad_input(const std::string& bytes, const std::string& extension = "") {
+  const Error error = refusal(bytes, extension);
+  EXPECT_EQ(error.fault(), Fault::kBadInput) << error.what();
+  EXPECT_FALSE(error.hint().empty());
+}
+
+// Every format's file of the same model.
+std::map<std::string, std::pair<std::string, std::string>> all_files(const TriangleSoup& soup) {
+  return {{"binary stl", {"stl", written::binary_stl(soup)}},
+          {"ascii stl", {"stl", written::ascii_stl(soup, "a name with facet in it")}},
+          {"obj", {"obj", written::obj(soup)}},
+          {"off", {"off", written::off(soup)}},
+          {"ascii ply", {"ply", written::ply(soup, PlyCoding::kAscii)}},
+          {"little ply", {"ply", written::ply(soup, PlyCoding::kLittle)}},
+          {"big ply", {"ply", written::ply(soup, PlyCoding::kBig)}},
+          {"3mf", {"3mf", written::simple_three_mf(soup)}}};
+}
+
+TEST(ReadModel, EveryFormatGivesTheSameShape) {
+  const TriangleSoup model = fixtures::sphere(10, 2);
+  const double volume = signed_volume_mm3(model);
+  for (const auto& [name, file] : all_files(model)) {
+    SCOPED_TRACE(name);
+    const ModelFile found = read(file.second, file.first);
+    EXPECT_EQ(found.format, file.first);
+    EXPECT_EQ(found.has_unit, file.first == "3mf");
+    EXPECT_EQ(found.soup.triangles.size(), model.triangles.size());
+    EXPECT_NEAR(signed_volume_mm3(found.soup), volume, 1e-3);
+  }
+}
+
+TEST(ReadModel, ContentGoesBeforeExtension) {
+  const TriangleSoup model = fixtures::cube(10);
+  EXPECT_EQ(read(written::binary_stl(model, "solid facet endsolid"), ".obj").format, "stl");
+  EXPECT_EQ(read(written::ply(model, PlyCoding::kBig), "STL").format, "ply");
+  EXPECT_EQ(read(written::off(model), "obj").format, "off");
+  EXPECT_EQ(read(written::simple_three_mf(model), "stl").format, "3mf");
+  EXPECT_EQ(read(written::ascii_stl(model, ""), "").format, "stl");
+  EXPECT_EQ(read(written::obj(model), ".OBJ").format, "obj");
+}
+
+TEST(ReadModel, BinaryStlMayBeginWithSolidAndCarryTrailingBytes) {
+  const TriangleSoup model = fixtures::cube(10);
+  EXPECT_EQ(read(written::binary_stl(model, "solid ascii"), "stl").soup.triangles.size(), 12u);
+  EXPECT_EQ(read(written::binary_stl(model, "made by") + "extra", "stl").soup.triangles.size(), 12u);
+}
+
+TEST(ReadModel, AsciiStlHoldsSeveralSolidsAndAnyLineEnd) {
+  const TriangleSoup model = fixtures::cube(10);
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    const std::string both =
+        written::ascii_stl(model, "first one", end) + written::ascii_stl(model, "", end);
+    EXPECT_EQ(read(both, "stl").soup.triangles.size(), 24u);
+  }
+}
+
+TEST(ReadModel, ObjKnowsNegativeIndicesPolygonsAndContinuedLines) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  EXPECT_EQ(read(square + "f -4 -3 -2 -1\n", "obj").soup.triangles.size(), 2u);
+  EXPECT_EQ(read(square + "f 1 2 \\\n 3 4\n", "obj").soup.triangles.size(), 2u);
+  EXPECT_EQ(read("\xEF\xBB\xBF# mark\n" + square + "f 1 2 3\n", "obj").soup.triangles.size(), 1u);
+  expect_bad_input(square + "f 1 2 5\n", "obj");
+  expect_bad_input(square + "f 1 2 0\n", "obj");
+  expect_bad_input(square + "f 1 2 -9\n", "obj");
+  expect_bad_input(square + "f 1 2 x\n", "obj");
+}
+
+TEST(ReadModel, ConcavePolygonsAreCutWithoutFolding) {
+  // An L: a fan from its first corner would leave the polygon.
+  const std::string text =
+      "v 0 2 0\nv 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nf 4 5 6 1 2 3\n";
+  const TriangleSoup soup = read(text, "obj").soup;
+  ASSERT_EQ(soup.triangles.size(), 4u);
+  double area = 0;
+  for (const auto& [a, b, c] : soup.triangles) {
+    const Vec3 normal = (soup.points[b] - soup.points[a]).cross(soup.points[c] - soup.points[a]);
+    EXPECT_GE(normal.z(), 0);
+    area += normal.norm() / 2;
+  }
+  EXPECT_NEAR(area, 4, 1e-12);
+}
+
+TEST(ReadModel, RefusesWhatHoldsNoModel) {
+  expect_bad_input("", "stl");
+  expect_bad_input("\n", "stl");
+  expect_bad_input("solid empty\nendsolid empty\n", "stl");
+  expect_bad_input(written::binary_stl(TriangleSoup()), "stl");
+  expect_bad_input("v 0 0 0\n", "obj");
+  expect_bad_input("OFF\n0 0 0\n", "off");
+  expect_bad_input("hello", "");
+  expect_bad_input("hello", "step");
+  EXPECT_THAT(refusal("hello", "step").hint(), HasSubstr("STL"));
+}
+
+TEST(ReadModel, RefusesNonFiniteAndEnormousCoordinates) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), 1e30}) {
+    TriangleSoup model = fixtures::cube(10);
+    model.points[3].y() = bad;
+    for (const auto& [name, file] : all_files(model)) {
+      SCOPED_TRACE(name);
+      expect_bad_input(file.second, file.first);
+    }
+  }
+}
+
+TEST(ReadModel, RefusesEveryTruncation) {
+  for (const auto& [name, file] : all_files(fixtures::cube(10))) {
+    SCOPED_TRACE(name);
+    // Text formats without a count cannot know that whole lines are missing.
+    const bool has_count = name != "obj" && name != "ascii stl";
+    for (std::size_t size = 0; size + 3 < file.second.size(); size += 7) {
+      const std::string cut = file.second.substr(0, size);
+      if (has_count) {
+        expect_bad_input(cut, file.first);
+      } else {
+        try {
+          EXPECT_LE(read(cut, file.first).soup.triangles.size(), 12u);
+        } catch (const Error& error) {
+          EXPECT_EQ(error.fault(), Fault::kBadInput);
+        }
+      }
+    }
+  }
+}
+
+TEST(ReadModel, DoesNotBelieveHugeCounts) {
+  std::string stl = written::binary_stl(fixtures::cube(10), "made by");
+  for (int i = 80; i < 84; ++i) stl[i] = '\xff';
+  expect_bad_input(stl, "stl");
+  expect_bad_input("OFF\n9000000000000000000 9000000000000000000 0\n0 0 0\n", "off");
+  expect_bad_input("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n9000000000000 0 1 2\n", "off");
+  for (const char* format : {"ascii", "binary_little_endian"}) {
+    const std::string head = std::string("ply\nformat ") + format + " 1.0\n";
+    expect_bad_input(head + "element vertex 9000000000000000000\nproperty float x\nend_header\n", "ply");
+    expect_bad_input(head + "element nothing 9000000000000000000\nend_header\n", "ply");
+    expect_bad_input(head + "element face 1\nproperty list uint int vertex_indices\nend_header\n" +
+                         "\xff\xff\xff\xff",
+                     "ply");
+  }
+  expect_bad_input("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float float x\nend_header\n"
+                   "1e300 1\n",
+                   "ply");
+}
+
+TEST(ReadModel, NamesTheFileThatIsMissing) {
+  try {
+    read_model("/nonexistent/model.stl", Progress());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kNoInput);
+    EXPECT_THAT(error.what(), HasSubstr("model.stl"));
+  }
+}
+
+TEST(ReadModel, ReadsFromDiskAndCanBeInterrupted) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a cube.stl";
+  write_file_whole(path, written::binary_stl(fixtures::cube(10)));
+  EXPECT_EQ(read_model(path, Progress()).soup.triangles.size(), 12u);
+  const std::atomic<bool> cancelled{true};
+  try {
+    read_model(path, Progress({}, &cancelled));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kInterrupted);
+  }
+}
+
+// Whatever bytes come, the answer is a model whose indices hold, or Error{kBadInput}.
+void expect_model_or_refusal(const std::string& bytes, const std::string& extension) {
+  try {
+    const ModelFile file = read(bytes, extension);
+    for (const auto& triangle : file.soup.triangles)
+      for (const int corner : triangle)
+        RC_ASSERT(corner >= 0 && corner < static_cast<int>(file.soup.points.size()));
+    for (const Vec3& point : file.soup.points) RC_ASSERT(point.allFinite());
+  } catch (const Error& error) {
+    RC_ASSERT(error.fault() == Fault::kBadInput);
+    RC_ASSERT(!error.hint().empty());
+  }
+}
+
+TEST(ReadModel, SurvivesMutatedBytes) {
+  const auto files = all_files(fixtures::sphere(10, 1));
+  RC_ASSERT(rc::check("mutated files are read or refused", [&] {
+    const auto& [name, file] = *rc::gen::elementOf(files);
+    std::string bytes = file.second;
+    const int changes = *rc::gen::inRange(1, 12);
+    for (int i = 0; i < changes; ++i) {
+      const auto at = *rc::gen::inRange<std::size_t>(0, bytes.size());
+      switch (*rc::gen::inRange(0, 4)) {
+        case 0: bytes[at] = *rc::gen::arbitrary<char>(); break;
+        case 1: bytes.erase(at, *rc::gen::inRange<std::size_t>(1, 40)); break;
+        case 2: bytes.insert(at, bytes.substr(at / 2, *rc::gen::inRange<std::size_t>(1, 40))); break;
+        case 3: bytes.insert(at, "99999999999"); break;
+      }
+      if (bytes.empty()) return;
+    }
+    expect_model_or_refusal(bytes, file.first);
+  }));
+}
+
+TEST(ReadModel, SurvivesAnyBytes) {
+  RC_ASSERT(rc::check("any bytes are read or refused", [] {
+    const std::string start = *rc::gen::element<std::string>(
+        "", "ply\nformat ascii 1.0\n", "OFF\n", "solid x\nfacet\n", "PK\x03\x04", "v 1 2 3\nf ");
+    const std::string bytes = start + *rc::gen::arbitrary<std::string>();
+    expect_model_or_refusal(
+        bytes, *rc::gen::element<std::string>("stl", "obj", "ply", "off", "3mf", ""));
+  }));
+}
+
+}  // namespace
+}  // namespace packmerger

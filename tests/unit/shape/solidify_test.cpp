@@ -1,0 +1,235 @@
+#include "shape/solidify.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "fixtures/models.h"
+#include "shape/hollow.h"
+#include "shape/repair.h"
+#include "shape/soup.h"
+#include "shape/surface_query.h"
+#include "shape/tetrahedralize.h"
+
+namespace packmerger {
+namespace {
+
+using fixtures::scaled_to;
+
+struct Made {
+  Mesh model;
+  Solidified solid;
+  Warnings warnings;
+};
+
+Made made(const TriangleSoup& soup, bool hollow_it = true) {
+  Made result;
+  result.model = repair(soup, result.warnings, Progress());
+  result.solid = solidify(result.model, ShapeSettings(), hollow_it, result.warnings, Progress());
+  return result;
+}
+
+bool warned(const Warnings& warnings, const std::string& code) {
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const Warning& warning) { return warning.code == code; });
+}
+
+int count_components(const TetMesh& mesh) {
+  std::vector<char> seen(mesh.tetrahedra.size(), 0);
+  int count = 0;
+  for (int first = 0; first < mesh.count(); ++first) {
+    if (seen[first] != 0) continue;
+    ++count;
+    std::vector<int> open = {first};
+    seen[first] = 1;
+    while (!open.empty()) {
+      const int t = open.back();
+      open.pop_back();
+      for (const int next : mesh.neighbours[t])
+        if (next >= 0 && seen[next] == 0) {
+          seen[next] = 1;
+          open.push_back(next);
+        }
+    }
+  }
+  return count;
+}
+
+TriangleSoup boundary(const TetMesh& mesh, FaceSide side) {
+  TriangleSoup soup;
+  soup.points = mesh.points;
+  for (int t = 0; t < mesh.count(); ++t)
+    for (int face = 0; face < 4; ++face)
+      if (mesh.sides[t][face] == side) soup.triangles.push_back(face_corners(mesh, t, face));
+  return without_unused_points(soup);
+}
+
+double furthest(const TriangleSoup& from, const TriangleSoup& to) {
+  const SurfaceQuery query(to);
+  double furthest = 0;
+  for (const Vec3& point : from.points) furthest = std::max(furthest, query.distance_mm(point));
+  for (const auto& [a, b, c] : from.triangles)
+    furthest = std::max(furthest,
+                        query.distance_mm((from.points[a] + from.points[b] + from.points[c]) / 3));
+  return furthest;
+}
+
+void expect_solid(const Made& made, int components = 1) {
+  const TetMesh& mesh = made.solid.tets;
+  const Shell& shell = made.solid.shell;
+  const double limit = ShapeSettings().max_tetrahedron_fraction * shell.volume_mm3;
+  ASSERT_GT(mesh.count(), 0);
+  EXPECT_LT(mesh.count(), 150000);
+  double sum = 0;
+  for (int t = 0; t < mesh.count(); ++t) {
+    const double volume = mesh.volume_mm3(t);
+    ASSERT_GT(volume, 0);
+    ASSERT_LE(volume, limit);
+    sum += volume;
+    for (int face = 0; face < 4; ++face)
+      ASSERT_EQ(mesh.neighbours[t][face] < 0, mesh.sides[t][face] != FaceSide::kInterior);
+  }
+  EXPECT_NEAR(sum, shell.volume_mm3, 1e-3 * shell.volume_mm3);
+  EXPECT_EQ(count_components(mesh), components);
+
+  const TriangleSoup outside = boundary(mesh, FaceSide::kOutside);
+  EXPECT_TRUE(is_closed_manifold(outside));
+  EXPECT_NEAR(signed_volume_mm3(outside), volume_mm3(shell.outer), 1e-6 * volume_mm3(shell.outer));
+  const double tolerance = made.solid.resample_tolerance_mm.value_or(0.1);
+  EXPECT_LE(furthest(outside, to_soup(made.model)), tolerance);
+  if (!made.solid.resample_tolerance_mm) {
+    EXPECT_LE(furthest(to_soup(shell.outer), outside), 1e-9);
+    // TetGen keeps the outer surface's own points exactly.
+    const auto less = [](const Vec3& a, const Vec3& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    };
+    std::vector<Vec3> points = outside.points;
+    std::sort(points.begin(), points.end(), less);
+    for (const auto vertex : shell.outer.vertices())
+      EXPECT_TRUE(std::binary_search(points.begin(), points.end(), shell.outer.point(vertex), less));
+  }
+  EXPECT_EQ(boundary(mesh, FaceSide::kCavity).triangles.empty(), shell.cavities.empty());
+}
+
+TEST(Solidify, ProceduralModels) {
+  for (const TriangleSoup& soup :
+       {fixtures::cube(60), fixtures::sphere(30, 4), fixtures::torus(30, 10, 60, 30),
+        fixtures::nested_cubes(60, 20), fixtures::nested_cubes(40, 32), fixtures::thin_plate(60, 4),
+        fixtures::blob(80, 4)}) {
+    const Made result = made(soup);
+    expect_solid(result);
+    EXPECT_FALSE(result.solid.resample_tolerance_mm);
+  }
+}
+
+TEST(Solidify, NotHollowedIsTheWholeModel) {
+  const Made result = made(fixtures::cube(40), false);
+  expect_solid(result);
+  EXPECT_TRUE(result.solid.shell.cavities.empty());
+  EXPECT_NEAR(total_volume_mm3(result.solid.tets), 64000, 64);
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(Solidify, SeveralBodiesStaySeveral) {
+  TriangleSoup second = fixtures::sphere(15, 3);
+  for (Vec3& point : second.points) point += Vec3(80, 10, 10);
+  expect_solid(made(fixtures::together(fixtures::cube(40), second)), 2);
+}
+
+TEST(Solidify, CrossingBodiesAreResampledAndSaySo) {
+  TriangleSoup second = fixtures::cube(30);
+  for (Vec3& point : second.points) point += Vec3(15, 14, 13);
+  const Made result = made(fixtures::together(fixtures::cube(30), second));
+  expect_solid(result);
+  EXPECT_EQ(result.solid.resample_tolerance_mm, ShapeSettings().resample_tolerance_mm);
+  EXPECT_TRUE(warned(result.warnings, "resampled"));
+}
+
+TEST(Solidify, SameBytesOnOneAndTwoThreads) {
+  const TriangleSoup model = fixtures::blob(60, 4);
+  const auto with_threads = [&](std::size_t threads) {
+    const ThreadLimit limit(threads);
+    return made(model).solid.tets;
+  };
+  const TetMesh one = with_threads(1);
+  const TetMesh two = with_threads(2);
+  EXPECT_EQ(one.points, two.points);
+  EXPECT_EQ(one.tetrahedra, two.tetrahedra);
+  EXPECT_EQ(one.sides, two.sides);
+}
+
+TEST(Tetrahedralize, ASurfaceThatCrossesItselfIsAnOrdinaryOutcome) {
+  TriangleSoup second = fixtures::sphere(10, 2);
+  for (Vec3& point : second.points) point += Vec3(5, 1, 1);
+  const Mesh crossing = closed_mesh(fixtures::together(fixtures::sphere(10, 2), second));
+  EXPECT_FALSE(tetrahedralize(solid_shell(crossing, ShapeSettings()), ShapeSettings(), Progress()));
+}
+
+TEST(Tetrahedralize, CanBeInterrupted) {
+  const std::atomic<bool> cancelled{true};
+  const Shell shell = solid_shell(closed_mesh(fixtures::cube(10)), ShapeSettings());
+  try {
+    tetrahedralize(shell, ShapeSettings(), Progress({}, &cancelled));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kInterrupted);
+  }
+}
+
+TEST(SolidifyRealModels, Bunny) {
+  PACKMERGER_TEST_MODEL(soup, "bunny");
+  for (const double size : {60.0, 138.0}) {
+    const Made result = made(scaled_to(soup, size));
+    expect_solid(result);
+    EXPECT_FALSE(result.solid.resample_tolerance_mm);
+    EXPECT_GT(result.solid.tets.count(), 10000);
+  }
+}
+
+TEST(SolidifyRealModels, Spot) {
+  PACKMERGER_TEST_MODEL(soup, "spot.obj");
+  expect_solid(made(scaled_to(soup, 100)));
+}
+
+TEST(SolidifyRealModels, RockerArm) {
+  PACKMERGER_TEST_MODEL(soup, "rocker-arm.obj");
+  expect_solid(made(scaled_to(soup, 100)));
+}
+
+TEST(SolidifyRealModels, CowIsResampled) {
+  PACKMERGER_TEST_MODEL(soup, "cow.obj");
+  const Made result = made(scaled_to(soup, 100));
+  expect_solid(result);
+  EXPECT_TRUE(warned(result.warnings, "resampled"));
+}
+
+TEST(SolidifyRealModels, StanfordBunnyHasItsHolesFilled) {
+  PACKMERGER_TEST_MODEL(soup, "stanford-bunny.obj");
+  const Made result = made(scaled_to(soup, 100));
+  expect_solid(result);
+  EXPECT_TRUE(warned(result.warnings, "repaired"));
+}
+
+// Open, non-manifold, with eyes that cross the head.
+TEST(SolidifyRealModels, SuzanneIsMadeSolidOrRefusedClearly) {
+  PACKMERGER_TEST_MODEL(soup, "suzanne.obj");
+  try {
+    const Made result = made(scaled_to(soup, 100));
+    expect_solid(result, count_components(result.solid.tets));
+    EXPECT_TRUE(warned(result.warnings, "repaired"));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kBadInput);
+    EXPECT_FALSE(error.hint().empty());
+  }
+}
+
+}  // namespace
+}  // namespace packmerger
