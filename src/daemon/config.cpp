@@ -6,97 +6,19 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <set>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/process.h"
+#include "daemon/config_table.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 constexpr std::size_t kMaxSocketPath = 107;  // sun_path of unix(7), less its final zero
-
-[[noreturn]] void refuse(const fs::path& file, int line, const std::string& what) {
-  throw Error(Fault::kBadProfile, file.string() + ":" + std::to_string(line) + ": " + what,
-              "Correct the line; docs/DAEMON.md lists every key.");
-}
-
-int line_of(const toml::node& node) {
-  return std::max(1, static_cast<int>(node.source().begin.line));
-}
-
-// Walks one table: every key is named once, with what it takes; a key nobody named is an error.
-// Without a table it only collects the names, for daemon_keys().
-class TableReader {
- public:
-  TableReader(const fs::path& file, const toml::table* table, std::string prefix,
-              std::vector<DaemonKey>* keys)
-      : file_(file), table_(table), prefix_(std::move(prefix)), keys_(keys) {}
-
-  // take(node) returns false for a value of the wrong type or out of its range.
-  void key(const std::string& name, const std::string& expected,
-           const std::function<bool(const toml::node&)>& take) {
-    known_.insert(name);
-    if (keys_ != nullptr) keys_->push_back({prefix_ + name, expected});
-    const toml::node* node = table_ != nullptr ? table_->get(name) : nullptr;
-    if (node != nullptr && !take(*node))
-      refuse(file_, line_of(*node), prefix_ + name + ": expected " + expected);
-  }
-
-  void number(const std::string& name, double least, double most, const std::string& expected,
-              const std::function<void(double)>& set) {
-    key(name, expected, [&](const toml::node& node) {
-      const auto value = node.value<double>();
-      if (!node.is_number() || !value || !(*value >= least && *value <= most)) return false;
-      set(*value);
-      return true;
-    });
-  }
-
-  void integer(const std::string& name, std::int64_t least, std::int64_t most,
-               const std::string& expected, const std::function<void(std::int64_t)>& set) {
-    key(name, expected, [&](const toml::node& node) {
-      const auto value = node.value_exact<std::int64_t>();
-      if (!value || *value < least || *value > most) return false;
-      set(*value);
-      return true;
-    });
-  }
-
-  void text(const std::string& name, const std::string& expected,
-            const std::function<bool(const std::string&)>& set) {
-    key(name, expected, [&](const toml::node& node) {
-      const auto value = node.value_exact<std::string>();
-      return value && !value->empty() && value->find('\0') == std::string::npos && set(*value);
-    });
-  }
-
-  void flag(const std::string& name, const std::function<void(bool)>& set) {
-    key(name, "true or false", [&](const toml::node& node) {
-      const auto value = node.value_exact<bool>();
-      if (value) set(*value);
-      return value.has_value();
-    });
-  }
-
-  void done() const {
-    if (table_ == nullptr) return;
-    for (const auto& [name, node] : *table_)
-      if (!known_.contains(std::string(name.str())))
-        refuse(file_, line_of(node), "unknown key " + prefix_ + std::string(name.str()));
-  }
-
- private:
-  const fs::path& file_;
-  const toml::table* table_;
-  std::string prefix_;
-  std::vector<DaemonKey>* keys_;
-  std::set<std::string> known_;
-};
 
 fs::path resolved(const fs::path& file, const std::string& text) {
   return (fs::absolute(file).parent_path() / text).lexically_normal();

@@ -1,4 +1,5 @@
 // packmergerd: watches folders, prepares what is dropped there, and prints it.
+#include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +24,7 @@ int run(const std::string& file) {
                 "Install packmerger beside packmergerd, or name it in [prepare] program.");
   if (::geteuid() == 0)
     log("warning: running as root; a user of its own in the group dialout is enough");
+  ::signal(SIGPIPE, SIG_IGN);  // whoever read our messages may go away
   packmerger::run_daemon(config, log);
   return 0;
 }
