@@ -1,12 +1,19 @@
 #include "pack/fill.h"
 
 namespace packmerger {
+namespace {
+
+constexpr std::size_t kManyParts = 40;
+
+}  // namespace
 
 Filler::Filler(const PackProblem& problem, const PartMaker& maker, const std::vector<Part>& parts)
     : problem_(problem), maker_(maker), parts_(parts) {
   rules_.build_mm = problem.build_mm;
   rules_.grid_mm = problem.grid_mm;
   rules_.cost = &problem.cost;
+  // With many parts most trays are full, and to make sure of that each time would take too long.
+  rules_.thorough = parts.size() <= kManyParts;
 }
 
 bool Filler::add_to(Filling& filling, int tray, int part) const {

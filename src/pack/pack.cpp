@@ -37,7 +37,7 @@ void check_settings(const PackProblem& problem) {
   if (!(problem.gap_mm >= 0)) refuse("The gap must not be negative", "Set gap_mm to 0 or more.");
   if (!(problem.build_mm.minCoeff() > 0))
     refuse("The build volume is empty", "Set build_mm to the printer's size.");
-  constexpr double kMostCells = 4e7;
+  constexpr double kMostCells = 4e6;
   if (problem.build_mm.x() * problem.build_mm.y() / (problem.grid_mm * problem.grid_mm) >
           kMostCells ||
       problem.build_mm.head<2>().maxCoeff() / problem.grid_mm > 4000)
@@ -170,7 +170,7 @@ Packing with_gaps_kept(const Plan& plan, Packing packing, const PackProblem& pro
     const double missing = problem.gap_mm - least_gap_mm(packing, problem);
     if (missing <= kGapTolerance_mm) return packing;
     margin += 1.5 * missing + 0.01;
-    PartMaker roomier(problem, margin);
+    PartMaker roomier(problem, margin, [&pace] { pace.tick(); });
     packing = carried_out(plan, problem, roomier, pace);
   }
   throw Error(Fault::kInternal,
@@ -183,7 +183,7 @@ Packing with_gaps_kept(const Plan& plan, Packing packing, const PackProblem& pro
 Packing pack(const PackProblem& problem, const Progress& progress) {
   check_settings(problem);
   Pace pace(progress, problem.budget_s);
-  PartMaker maker(problem, 0);
+  PartMaker maker(problem, 0, [&pace] { pace.tick(); });
   const std::vector<Plan> ways = plans(search(problem, maker, pace));
   const Plan* best_plan = nullptr;
   Packing best;

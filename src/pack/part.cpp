@@ -5,10 +5,24 @@
 #include <numbers>
 #include <utility>
 
+#include "base/error.h"
+
 namespace packmerger {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 2;
+
+constexpr double kMapMemory_bytes = 512e6;  // for the maps of all parts in all rotations
+constexpr double kBytesPerCell = 4 * sizeof(MapCell);
+constexpr double kMostCellsFromCentre = 30000;  // MapCell counts them in 16 bits
+
+// Cells of the larger views of a part; its maps take about that in each rotation.
+double cells_seen(const TriangleSoup& surface, double grid_mm) {
+  Box3 box;
+  for (const Vec3& point : surface.points) box.extend(point);
+  const Vec3 cells = box.sizes() / grid_mm + Vec3(2, 2, 2);
+  return cells.prod() / cells.minCoeff();
+}
 
 std::size_t ways_tried(Effort effort) {
   switch (effort) {
@@ -148,9 +162,10 @@ Mat3 rotation_of(const WayUp& way, double turn) {
 
 }  // namespace
 
-PartMaker::PartMaker(const PackProblem& problem, double margin_mm)
+PartMaker::PartMaker(const PackProblem& problem, double margin_mm, std::function<void()> tick)
     : problem_(problem),
       margin_mm_(margin_mm),
+      tick_(std::move(tick)),
       coarse_(std::max(1, static_cast<int>(std::lround(problem.search_grid_mm / problem.grid_mm)))),
       growth_(static_cast<int>(std::ceil((problem.gap_mm + margin_mm) / problem.grid_mm))),
       rotation_set_(rotation_set(problem.rotation_step)) {
@@ -162,20 +177,27 @@ PartMaker::PartMaker(const PackProblem& problem, double margin_mm)
   }
   for (const Box3& box : boxes) centres_.push_back(box.isEmpty() ? Vec3(0, 0, 0) : box.center());
 
+  double cells = 0;  // of all different shapes
   std::map<std::vector<double>, int> known;
   for (std::size_t i = 0; i < problem.items.size(); ++i) {
     Shape shape{to_soup(problem.items[i].surface), 0};
     std::vector<double> look;
     for (Vec3& point : shape.surface.points) {
       point -= centre(problem.items[i].model);
+      if (point.norm() / problem.grid_mm > kMostCellsFromCentre)
+        throw Error(Fault::kUsage, "The packer's grid is too fine for a model of this size",
+                    "Set a larger grid_mm.");
       look.insert(look.end(), {point.x(), point.y(), point.z()});
     }
     for (const auto& [a, b, c] : shape.surface.triangles)
       look.insert(look.end(),
                   {static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)});
     shape.twin = known.emplace(std::move(look), static_cast<int>(i)).first->second;
+    if (shape.twin == static_cast<int>(i)) cells += cells_seen(shape.surface, problem.grid_mm);
     shapes_.push_back(std::move(shape));
   }
+  most_rotations_ = static_cast<std::size_t>(
+      std::clamp(kMapMemory_bytes / (kBytesPerCell * std::max(1.0, cells)), 1.0, 1e6));
 }
 
 std::vector<TriangleSoup> PartMaker::surfaces(const std::vector<int>& items) const {
@@ -248,7 +270,7 @@ std::optional<Part> PartMaker::make(std::vector<int> items) {
   const std::vector<TriangleSoup> shapes = surfaces(items);
   for (const int item : items)
     part.volume_mm3 += problem_.items[static_cast<std::size_t>(item)].volume_mm3;
-  part.ways = ranked_ways_up(shapes, part.volume_mm3, rotation_set_, problem_);
+  part.ways = ranked_ways_up(shapes, part.volume_mm3, rotation_set_, problem_, tick_);
   if (part.ways.empty()) {
     const auto found = way_up_that_fits(shapes, part.volume_mm3, problem_);
     if (!found) return std::nullopt;
@@ -265,10 +287,12 @@ std::shared_ptr<const std::vector<RotatedPart>> PartMaker::rotations(const Part&
   const std::vector<double> turns = effort == Effort::kPlace
                                         ? rotation_set_.turns
                                         : rotation_set(problem_.search_rotation_step).turns;
-  const std::size_t ways = std::min(part.ways.size(), ways_tried(effort));
+  const std::size_t affordable = std::max<std::size_t>(1, most_rotations_ / turns.size());
+  const std::size_t ways = std::min({part.ways.size(), ways_tried(effort), affordable});
   auto made = std::make_shared<std::vector<RotatedPart>>();
   for (std::size_t i = 0; i < ways; ++i)
     for (const double turn : turns) {
+      tick_();
       RotatedPart one = rotated(part.items, part.ways[i], turn);
       if (fits(one.box.sizes(), problem_.build_mm)) made->push_back(std::move(one));
     }

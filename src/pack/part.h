@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -60,8 +61,9 @@ enum class Effort { kSearch, kPlace, kAlone };
 // Makes parts of items, drawing the maps of each item once per rotation. Thread-safe.
 class PartMaker {
  public:
-  // margin_mm is added to the gap in the maps. problem must outlive the maker.
-  PartMaker(const PackProblem& problem, double margin_mm);
+  // margin_mm is added to the gap in the maps. tick is called often, from any thread, and may throw
+  // to end the making. problem must outlive the maker.
+  PartMaker(const PackProblem& problem, double margin_mm, std::function<void()> tick);
 
   // A part with the search's rotations. Empty where no rotation fits the build volume.
   std::optional<Part> make(std::vector<int> items);
@@ -94,8 +96,10 @@ class PartMaker {
 
   const PackProblem& problem_;
   double margin_mm_;
+  std::function<void()> tick_;
   int coarse_ = 1;
   int growth_ = 0;
+  std::size_t most_rotations_ = 1;  // of one part, so that all together stay in memory
   RotationSet rotation_set_;
   std::vector<Vec3> centres_;  // by model
   std::vector<Shape> shapes_;  // by item

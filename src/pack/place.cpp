@@ -12,6 +12,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kTolerance_mm = 1e-9;
+constexpr double kHeightSlack_mm = 1e-3;  // for heights in single precision
 constexpr std::size_t kCandidatesPerRotation = 3;
 
 struct Range {
@@ -84,10 +85,11 @@ class Rating {
   // No cost at this position, however high the part ends up, is less.
   double bound(int x, int y) const { return bound(x, y, floor()); }
 
-  // A height in row y, between two columns, above which no cost is within the limit.
-  double highest_worth_it(Range columns, int y, int step, double limit) const {
+  // A height in row y, between two columns, above which no cost is within the limit, or the part is
+  // too high by more than `slack`.
+  double highest_worth_it(Range columns, int y, int step, double limit, double slack) const {
     double low = floor();
-    double high = rules_.build_mm.z() - rotated_.box.max().z() + 2 * step * rules_.grid_mm;
+    double high = rules_.build_mm.z() - rotated_.box.max().z() + slack;
     if (!std::isfinite(limit) || high <= low) return high;
     // The box grows least where the part lies within the contents' extent, or nearest to that.
     const double inside =
@@ -188,8 +190,9 @@ Ranges fine_ranges(const TrayState& tray, const RotatedPart& part, const PlaceRu
   return ranges;
 }
 
-void rate_coarsely(const TrayState& tray, const Part& part, int rotation, const PlaceRules& rules,
-                   Shortlist& shortlist) {
+// slack: mm by which a coarse height may be above the tray's limit.
+void rate_coarsely(const TrayState& tray, const Part& part, int rotation, double slack,
+                   const PlaceRules& rules, Shortlist& shortlist) {
   const RotatedPart& rotated = (*part.rotations)[static_cast<std::size_t>(rotation)];
   const Ranges fine = fine_ranges(tray, rotated, rules);
   if (fine.x.empty() || fine.y.empty()) return;
@@ -204,7 +207,8 @@ void rate_coarsely(const TrayState& tray, const Part& part, int rotation, const 
     const double limit = std::min(shortlist.limit(), own.limit());
     const Range row = rating.worth_trying(xs, y * step, step, limit);
     if (row.empty()) continue;
-    const float highest = static_cast<float>(rating.highest_worth_it(row, y * step, step, limit));
+    const float highest =
+        static_cast<float>(rating.highest_worth_it(row, y * step, step, limit, slack));
     heights.resize(static_cast<std::size_t>(row.count()));
     fall(tray.field.coarse_upper, rotated.coarse_reach, row.first, y,
          static_cast<float>(rating.floor()), highest, heights);
@@ -212,7 +216,6 @@ void rate_coarsely(const TrayState& tray, const Part& part, int rotation, const 
     sums.resize(heights.size());
     sum_field(tray.field.coarse_surface, rotated.coarse_hang, true, row.first, y, sums);
     for (std::size_t i = 0; i < heights.size(); ++i) {
-      // Coarse heights err by about a block's own slope: only what is far too high is out.
       if (heights[i] > highest) continue;
       const double z = heights[i];
       const int x = row.first + static_cast<int>(i);
@@ -243,7 +246,9 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
     if (row.empty()) continue;
     const float floor = static_cast<float>(rating.floor());
     const float highest =
-        rules.on_plate_only ? floor : static_cast<float>(rating.highest_worth_it(row, y, 1, limit));
+        rules.on_plate_only
+            ? floor
+            : static_cast<float>(rating.highest_worth_it(row, y, 1, limit, rules.grid_mm));
     heights.resize(static_cast<std::size_t>(row.count()));
     fall(tray.field.upper, rotated.reach, row.first, y, floor, highest, heights);
     if (*std::min_element(heights.begin(), heights.end()) > highest) continue;
@@ -264,6 +269,20 @@ void look_closely(const TrayState& tray, const Part& part, const Candidate& cand
       if (!best || better(spot, *best)) best = spot;
     }
   }
+}
+
+// The best of the spots round the best few coarse positions.
+std::optional<Spot> best_promised(const TrayState& tray, const Part& part, double slack,
+                                  const PlaceRules& rules) {
+  // On an empty tray there is one position a rotation, so all of them are looked at.
+  Shortlist shortlist(tray.parts == 0 ? part.rotations->size()
+                                      : static_cast<std::size_t>(rules.candidates));
+  for (int rotation = 0; rotation < static_cast<int>(part.rotations->size()); ++rotation)
+    rate_coarsely(tray, part, rotation, slack, rules, shortlist);
+  std::optional<Spot> best;
+  for (const Candidate& candidate : shortlist.best())
+    look_closely(tray, part, candidate, rules, best);
+  return best;
 }
 
 // Every position in every rotation, the promising ones first, so that the others are soon out.
@@ -295,17 +314,13 @@ std::optional<Spot> best_spot(const TrayState& tray, const Part& part, const Pla
   if (tray.closed) return std::nullopt;
   // Coarse heights do not tell what stands on the plate.
   if (rules.on_plate_only) return look_everywhere(tray, part, rules);
-  // On an empty tray there is one position a rotation, so all of them are looked at.
-  const std::size_t candidates =
-      tray.parts == 0 ? part.rotations->size() : static_cast<std::size_t>(rules.candidates);
-  Shortlist shortlist(candidates);
-  for (int rotation = 0; rotation < static_cast<int>(part.rotations->size()); ++rotation)
-    rate_coarsely(tray, part, rotation, rules, shortlist);
-  std::optional<Spot> best;
-  for (const Candidate& candidate : shortlist.best())
-    look_closely(tray, part, candidate, rules, best);
-  // Where the coarse heights promised nothing that holds, the part may still have a place.
-  return best ? best : look_everywhere(tray, part, rules);
+  // Coarse heights err by about a block's slope. Where all they promised is too high, it may be
+  // that such promises kept out lesser ones that hold.
+  std::optional<Spot> best =
+      best_promised(tray, part, 2 * tray.field.coarse * rules.grid_mm, rules);
+  if (!best && tray.parts > 0) best = best_promised(tray, part, kHeightSlack_mm, rules);
+  if (!best && rules.thorough) best = look_everywhere(tray, part, rules);
+  return best;
 }
 
 void put(TrayState& tray, const Part& part, const Spot& spot, double grid_mm) {

@@ -16,6 +16,7 @@ struct PlaceRules {
   const Cost* cost = nullptr;
   int candidates = 12;         // coarse positions that are looked at closely
   bool on_plate_only = false;  // nothing may lie on or over anything
+  bool thorough = true;        // looks everywhere before it gives a tray up
 };
 
 struct Spot {

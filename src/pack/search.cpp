@@ -1,6 +1,7 @@
 #include "pack/search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,15 +15,22 @@ namespace packmerger {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kSnapshots = 32;  // of an order's prefixes; each holds a tray's height field
-constexpr double kSearchShare = 0.9;    // of the packing's progress
+constexpr std::size_t kSnapshots = 32;  // of an order's prefixes; each holds trays' height fields
+constexpr double kSnapshotMemory_bytes = 256e6;
+constexpr double kSearchShare = 0.9;  // of the packing's progress
 
 // Costs of orders of one list of parts, with the trays kept as they were after some prefixes of the
 // order the search stands at, so that a swap is packed again from its first change only.
 class OrderPacker {
  public:
-  OrderPacker(const Filler& filler, std::size_t parts, Pace& pace)
-      : filler_(filler), pace_(pace), stride_(std::max<std::size_t>(1, parts / kSnapshots)) {}
+  OrderPacker(const Filler& filler, std::size_t parts, const PackProblem& problem, Pace& pace)
+      : filler_(filler), pace_(pace) {
+    const double cells = problem.build_mm.x() * problem.build_mm.y() / std::pow(problem.grid_mm, 2);
+    const double affordable = kSnapshotMemory_bytes / (2 * sizeof(float) * std::max(1.0, cells));
+    const auto snapshots =
+        static_cast<std::size_t>(std::clamp(affordable, 1.0, static_cast<double>(kSnapshots)));
+    stride_ = (parts + snapshots - 1) / snapshots;
+  }
 
   // Packs the whole order and stands there.
   double start(const Order& order) {
@@ -65,7 +73,7 @@ class OrderPacker {
 
   const Filler& filler_;
   Pace& pace_;
-  std::size_t stride_;
+  std::size_t stride_ = 1;
   std::vector<Filling> snapshots_;  // [k]: after the first k · stride_ parts
 };
 
@@ -134,7 +142,7 @@ class MergeSearch {
   void optimize_order(Configuration& configuration, int level) {
     const std::vector<Part> parts = make_parts(configuration.parts, maker_, problem_, pace_);
     const Filler filler(problem_, maker_, parts);
-    OrderPacker packer(filler, parts.size(), pace_);
+    OrderPacker packer(filler, parts.size(), problem_, pace_);
     FoundOrder start{configuration.order, 0};
     if (configuration.order.empty()) start = first_order(parts, packer, random_);
     start.cost = packer.start(start.order);

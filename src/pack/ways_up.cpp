@@ -76,9 +76,11 @@ bool fits(const Vec3& size_mm, const Vec3& build_mm) {
 }
 
 std::vector<WayUp> ranked_ways_up(const std::vector<TriangleSoup>& surfaces, double volume_mm3,
-                                  const RotationSet& rotations, const PackProblem& problem) {
+                                  const RotationSet& rotations, const PackProblem& problem,
+                                  const std::function<void()>& tick) {
   std::vector<WayUp> ways;
   for (const Mat3& way : rotations.ways_up) {
+    tick();
     // Support hardly depends on the turn; the box does, so the cheapest box decides the turn.
     double best_cost = 0;
     std::optional<double> best;

@@ -2,6 +2,7 @@
 // would cost alone on a tray.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,9 +21,11 @@ struct WayUp {
 };
 
 // The ways up in which the surfaces together fit the build volume, each in its cheapest turn,
-// cheapest first. Empty where none fits.
+// cheapest first. Empty where none fits. tick
+// is called once for each way.
 std::vector<WayUp> ranked_ways_up(const std::vector<TriangleSoup>& surfaces, double volume_mm3,
-                                  const RotationSet& rotations, const PackProblem& problem);
+                                  const RotationSet& rotations, const PackProblem& problem,
+                                  const std::function<void()>& tick);
 
 // A rotation found by sampling and refining in which the surfaces fit the build volume although no
 // rotation of the set did; empty where none was found.

@@ -162,6 +162,19 @@ TEST(Pack, MorePartsThanFitGoToFurtherTrays) {
   EXPECT_EQ(packing.trays.size(), 2U);
 }
 
+TEST(Pack, ManyPartsOfFewShapesFillSeveralTrays) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 60; ++i)
+    meshes.push_back(i % 2 == 0 ? shapes::box(Vec3(9, 9, 9)) : shapes::l_shape(12, 3, 5));
+  PackProblem problem = problem_of(std::move(meshes), Vec3(45, 45, 15));
+  problem.tabu_patience = 1;
+  const Packing packing = pack(problem, {});
+  check::expect_valid(problem, packing, 0.5);
+  // 16 of the boxes would fill a tray by themselves.
+  EXPECT_GE(packing.trays.size(), 2U);
+  EXPECT_LE(packing.trays.size(), 5U);
+}
+
 TEST(Pack, PartsAsLargeAsTheTrayGetOneEach) {
   std::vector<Mesh> meshes{shapes::box(Vec3(50, 40, 30), Vec3(0.3, 0.4, 0.1)),
                            shapes::box(Vec3(50, 40, 30), Vec3(-7.7, 0, 0)),
@@ -206,6 +219,11 @@ TEST(Pack, SettingsWithoutSenseAreRefused) {
   EXPECT_TRUE(refused([](PackProblem& p) { p.items.clear(); }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.grid_mm = 0; }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.grid_mm = 1e-6; }));
+  EXPECT_TRUE(refused([](PackProblem& p) {
+    p.build_mm = Vec3(1, 1, 1);
+    p.grid_mm = 1e-3;
+    p.items[0].surface = shapes::box(Vec3(5, 5, 100));
+  }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.gap_mm = -1; }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.build_mm.z() = 0; }));
 }
