@@ -17,7 +17,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kCreaseAngle = 40 * std::numbers::pi / 180;
-constexpr double kTolerance_mm = 0.08;        // sampled; the promise is 0.1
+constexpr double kTolerance_mm = 0.07;        // sampled; the promise is 0.1
 constexpr double kLeastVolumeFraction = 0.1;  // of a tetrahedron's volume at the start
 constexpr double kVolumeFraction = 5e-4;      // of V_o, that all moves together may add or take
 constexpr int kHalvings = 3;                  // of a step that is too long
@@ -163,7 +163,7 @@ class Smoother {
     std::sort(ring_.begin(), ring_.end());
     ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
     return lies_flat(point, place) ||
-           (new_faces_are_near(point, place.face) && homes_are_near(point));
+           (new_faces_are_near(point, place.face) && old_faces_are_near(point));
   }
 
   // Both surfaces lie in one thin slab: the cheap test that nearly always does.
@@ -177,40 +177,46 @@ class Smoother {
            });
   }
 
+  // Samples of the faces at the point as they are, against the surface as it was.
   bool new_faces_are_near(int point, int from) const {
-    const auto is_near = [&](const Vec3& p) {
-      return (walk_.nearest(p, from).point - p).squaredNorm() <= kTolerance_mm * kTolerance_mm;
-    };
-    for (const int face : walk_.faces_at(point)) {
+    const auto faces = walk_.faces_at(point);
+    return std::all_of(faces.begin(), faces.end(), [&](int face) {
       const auto [a, b, c] = walk_.surface().faces[face].corners;
-      const Vec3 &pa = mesh_.points[a], &pb = mesh_.points[b], &pc = mesh_.points[c];
-      if (!is_near((pa + pb + pc) / 3) || !is_near((pa + pb) / 2) || !is_near((pb + pc) / 2) ||
-          !is_near((pc + pa) / 2))
-        return false;
-    }
-    return true;
+      return all_samples(mesh_.points[a], mesh_.points[b], mesh_.points[c],
+                         [&](const Vec3& p) { return is_near(walk_.nearest(p, from).point, p); });
+    });
   }
 
-  bool homes_are_near(int point) const {
-    const auto nearest_of = [&](const Vec3& p, int centre) {
-      double least = 1e300;
-      for (const int face : walk_.faces_at(centre)) {
+  // Samples of the faces at the point as they were, against the surface as it is nearby.
+  bool old_faces_are_near(int point) const {
+    const auto is_near_faces_at = [&](const Vec3& p, int centre) {
+      const auto faces = walk_.faces_at(centre);
+      return std::any_of(faces.begin(), faces.end(), [&](int face) {
         const auto [a, b, c] = walk_.surface().faces[face].corners;
-        const Vec3 q = nearest_on_triangle(p, mesh_.points[a], mesh_.points[b], mesh_.points[c]);
-        least = std::min(least, (q - p).squaredNorm());
-      }
-      return least;
+        return is_near(nearest_on_triangle(p, mesh_.points[a], mesh_.points[b], mesh_.points[c]),
+                       p);
+      });
     };
-    const auto is_near = [&](int home) {
-      const Vec3& p = walk_.home(home);
-      double least = std::min(nearest_of(p, home), nearest_of(p, point));
-      for (const int other : ring_) {
-        if (least <= kTolerance_mm * kTolerance_mm) break;
-        least = std::min(least, nearest_of(p, other));
-      }
-      return least <= kTolerance_mm * kTolerance_mm;
-    };
-    return is_near(point) && std::all_of(ring_.begin(), ring_.end(), is_near);
+    const auto faces = walk_.faces_at(point);
+    return std::all_of(faces.begin(), faces.end(), [&](int face) {
+      const auto [a, b, c] = walk_.surface().faces[face].corners;
+      return all_samples(walk_.home(a), walk_.home(b), walk_.home(c), [&](const Vec3& p) {
+        return is_near_faces_at(p, point) ||
+               std::any_of(ring_.begin(), ring_.end(),
+                           [&](int other) { return is_near_faces_at(p, other); });
+      });
+    });
+  }
+
+  static bool is_near(const Vec3& a, const Vec3& b) {
+    return (a - b).squaredNorm() <= kTolerance_mm * kTolerance_mm;
+  }
+
+  template <typename Test>
+  static bool all_samples(const Vec3& a, const Vec3& b, const Vec3& c, const Test& test) {
+    return test(a) && test(b) && test(c) && test((a + b) / 2) && test((b + c) / 2) &&
+           test((c + a) / 2) && test((a + b + c) / 3) && test((4 * a + b + c) / 6) &&
+           test((a + 4 * b + c) / 6) && test((a + b + 4 * c) / 6);
   }
 
   TetMesh& mesh_;
