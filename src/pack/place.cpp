@@ -56,7 +56,7 @@ class Rating {
  public:
   Rating(const TrayState& tray, const Part& part, const RotatedPart& rotated,
          const PlaceRules& rules)
-      : tray_(tray), part_(part), rotated_(rotated), rules_(rules) {
+      : tray_(tray), rotated_(rotated), rules_(rules) {
     before_ = tray.measure();
     before_.support_mm3 += rotated.inside_support_mm3;
     before_.material_mm3 += part.volume_mm3;
@@ -134,7 +134,6 @@ class Rating {
   }
 
   const TrayState& tray_;
-  const Part& part_;
   const RotatedPart& rotated_;
   const PlaceRules& rules_;
   TrayMeasure before_;

@@ -104,7 +104,7 @@ void expect_bounds(const DepthMaps& maps, const Mesh& mesh, double grid, Random&
   for (const auto face : mesh.faces()) {
     const auto corner = corners(mesh, face);
     const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 40; ++i) {
       double u = random.unit();
       double v = random.unit();
       if (u + v > 1) {
