@@ -1,5 +1,7 @@
 #include "shape/distance_grid.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -66,6 +68,48 @@ void add_quad(TriangleSoup& soup, const std::array<int, 4>& q) {
   }
 }
 
+// Components that are matter, or cavities in what came before, in the order they are laid.
+struct Layer {
+  bool is_matter = true;
+  TriangleSoup soup;
+};
+
+// A component inside another one has a smaller box, so it comes later.
+std::vector<Layer> layers_of(const Mesh& mesh) {
+  std::vector<TriangleSoup> parts = split_components(to_soup(mesh));
+  std::stable_sort(parts.begin(), parts.end(), [](const TriangleSoup& a, const TriangleSoup& b) {
+    return bounding_box(a).volume() > bounding_box(b).volume();
+  });
+  std::vector<Layer> layers;
+  for (const TriangleSoup& part : parts) {
+    const bool is_matter = signed_volume_mm3(part) >= 0;
+    if (layers.empty() || layers.back().is_matter != is_matter) layers.push_back({is_matter, {}});
+    TriangleSoup& soup = layers.back().soup;
+    const int base = static_cast<int>(soup.points.size());
+    soup.points.insert(soup.points.end(), part.points.begin(), part.points.end());
+    for (const auto& [a, b, c] : part.triangles)
+      soup.triangles.push_back({a + base, b + base, c + base});
+  }
+  return layers;
+}
+
+// Adds matter, or takes a cavity out. OpenVDB's own operations want bands of equal width on both
+// sides; here only the sides that are looked at need be wide.
+void lay(openvdb::FloatGrid& grid, const openvdb::FloatGrid& layer, bool is_matter) {
+  auto accessor = grid.getAccessor();
+  for (auto value = layer.cbeginValueAll(); value; ++value) {
+    if (value.isVoxelValue()) {
+      const float old = accessor.getValue(value.getCoord());
+      const float changed = is_matter ? std::min(old, *value) : std::max(old, -*value);
+      if (changed != old) accessor.setValue(value.getCoord(), changed);
+    } else if (*value < 0) {
+      openvdb::CoordBBox box;
+      value.getBoundingBox(box);
+      grid.fill(box, is_matter ? *value : -*value, false);
+    }
+  }
+}
+
 }  // namespace
 
 struct DistanceGrid::Grid {
@@ -113,12 +157,20 @@ DistanceGrid::DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, 
                 "Raise voxel_mm, or scale the model down.");
   grid_->voxel_mm = voxel_mm;
   grid_->origin = bounding_box(mesh).min() - Vec3::Constant(kShift * voxel_mm);
-  const Adapter adapter(to_soup(mesh), grid_->origin, voxel_mm);
+  const float inside = static_cast<float>(inside_mm / voxel_mm + 2);
+  const float outside = static_cast<float>(outside_mm / voxel_mm + 2);
   Interrupter interrupter(progress);
-  grid_->values = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-      interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0),
-      static_cast<float>(outside_mm / voxel_mm + 2), static_cast<float>(inside_mm / voxel_mm + 2));
-  progress.check();
+  for (Layer& layer : layers_of(mesh)) {
+    const Adapter adapter(std::move(layer.soup), grid_->origin, voxel_mm);
+    auto values = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+        interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0),
+        layer.is_matter ? outside : inside, layer.is_matter ? inside : outside);
+    progress.check();
+    if (grid_->values)
+      lay(*grid_->values, *values, layer.is_matter);
+    else
+      grid_->values = std::move(values);
+  }
 }
 
 DistanceGrid::DistanceGrid(DistanceGrid&&) noexcept = default;

@@ -12,7 +12,8 @@ namespace packmerger {
 class DistanceGrid {
  public:
   // Exact near the surface: from inside_mm below it to outside_mm above. What no way from outside
-  // leads to without crossing a triangle is inside, so pieces that overlap become one.
+  // leads to without crossing a triangle is inside, so pieces that overlap become one; components
+  // that are oriented inwards are cavities.
   // mesh: closed; it may intersect itself.
   // Throws Error{kBadInput} when about more than 200 million voxels are needed.
   DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, double outside_mm,

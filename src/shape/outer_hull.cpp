@@ -1,8 +1,10 @@
 #include "shape/outer_hull.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <vector>
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -78,15 +80,35 @@ TriangleSoup outside_of(const TriangleSoup& pieces, const SurfaceQuery& model) {
   return kept;
 }
 
+// Points at the same place belong to sheets that touch; each goes towards its own neighbours.
+void draw_apart(Mesh& mesh, double gap_mm) {
+  const auto less = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::map<Vec3, std::vector<Mesh::VertexHandle>, decltype(less)> at(less);
+  for (const auto vertex : mesh.vertices()) at[mesh.point(vertex)].push_back(vertex);
+  for (const auto& [place, vertices] : at) {
+    if (vertices.size() == 1) continue;
+    for (const auto vertex : vertices) {
+      Vec3 towards = Vec3::Zero();
+      for (const auto neighbour : mesh.vv_range(vertex))
+        towards += (mesh.point(neighbour) - place).normalized();
+      if (towards.norm() > 0) mesh.set_point(vertex, place + gap_mm * towards.normalized());
+    }
+  }
+}
+
 }  // namespace
 
-std::optional<Mesh> outer_hull(const Mesh& mesh, const Progress& progress) {
+std::optional<Mesh> outer_hull(const Mesh& mesh, double gap_mm, const Progress& progress) {
   try {
     const TriangleSoup pieces = cut_pieces(mesh);
     progress.check();
     const TriangleSoup outside = outside_of(pieces, SurfaceQuery(mesh));
     Warnings of_pieces;  // what closing the pieces took concerns nobody: the deviation is measured
-    return repair(outside, of_pieces, progress);
+    Mesh hull = repair(outside, of_pieces, progress);
+    draw_apart(hull, gap_mm);
+    return hull;
   } catch (const Error& error) {
     if (error.fault() == Fault::kInterrupted) throw;
     return std::nullopt;

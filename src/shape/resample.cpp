@@ -28,6 +28,8 @@ constexpr double kBand = 2;  // voxels on both sides
 constexpr double kMaxVoxels = 6e7;
 constexpr double kCoarsening = 0.2;    // of the tolerance
 constexpr double kLongestEdge = 0.04;  // of the diagonal
+// Between sheets of the hull that would touch, of the tolerance.
+constexpr double kGap = 0.1;
 // Components smaller than this many voxels are grains of the grid, not of the model.
 constexpr double kGrain = 8;
 
@@ -128,7 +130,7 @@ struct Measure {
 // The exact outside, coarsened a little where rounding made its pieces cross again.
 std::optional<Resampled> from_hull(const Mesh& mesh, double max_edge_mm, Measure& measure,
                                    const Progress& progress) {
-  const auto hull = outer_hull(mesh, progress);
+  const auto hull = outer_hull(mesh, kGap * measure.tolerance_mm, progress);
   if (!hull) return std::nullopt;
   if (!self_intersects(*hull))
     if (auto result = measure.accepted(*hull)) return result;

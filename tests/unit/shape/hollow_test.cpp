@@ -63,7 +63,7 @@ TEST(Hollow, SphereAndTorus) {
   Warnings warnings;
   const Shell ball = hollowed(fixtures::sphere(20, 4), warnings);
   expect_good_cavities(ball, 3);
-  EXPECT_NEAR(-volume_mm3(ball.cavities.at(0)), 4.0 / 3 * 3.14159 * 17 * 17 * 17, 400);
+  EXPECT_NEAR(-volume_mm3(ball.cavities.at(0)), 4.0 / 3 * 3.14159 * 17 * 17 * 17, 800);
   const Shell ring = hollowed(fixtures::torus(30, 10, 60, 30), warnings);
   expect_good_cavities(ring, 3);
   EXPECT_EQ(ring.cavities.size(), 1u);
@@ -91,6 +91,7 @@ TEST(Hollow, OwnCavityWhoseWallWouldFloatJoinsTheNewOne) {
   expect_good_cavities(shell, 3);
   EXPECT_EQ(shell.cavities.size(), 1u);
   EXPECT_EQ(components_of(to_soup(shell.outer)).count, 1);
+  EXPECT_NEAR(shell.volume_mm3, 60 * 60 * 60 - 54 * 54 * 54, 2000);
 }
 
 TEST(Hollow, OwnCavityStaysWhereThereIsNoRoom) {
@@ -99,6 +100,18 @@ TEST(Hollow, OwnCavityStaysWhereThereIsNoRoom) {
   EXPECT_TRUE(shell.cavities.empty());
   EXPECT_EQ(components_of(to_soup(shell.outer)).count, 2);
   EXPECT_NEAR(shell.volume_mm3, 40 * 40 * 40 - 30 * 30 * 30, 1e-6);
+}
+
+TEST(Hollow, MatterInAnOwnCavityIsHollowedToo) {
+  Warnings warnings;
+  const Shell shell = hollowed(
+      fixtures::together(fixtures::nested_cubes(60, 52),
+                         fixtures::box(Vec3::Constant(10), Vec3::Constant(50))),
+      warnings);
+  expect_good_cavities(shell, 3);
+  EXPECT_EQ(components_of(to_soup(shell.outer)).count, 3);
+  ASSERT_EQ(shell.cavities.size(), 1u);
+  EXPECT_NEAR(-volume_mm3(shell.cavities[0]), 34 * 34 * 34, 1000);
 }
 
 TEST(Hollow, SameBytesOnOneAndTwoThreads) {

@@ -122,8 +122,8 @@ TEST(Repair, ComponentsInsideOthersAreCavities) {
 
 TEST(Repair, FillsHoles) {
   TriangleSoup soup = fixtures::cube(10);
-  soup.triangles.erase(soup.triangles.begin() + 4);
-  soup.triangles.erase(soup.triangles.begin(), soup.triangles.begin() + 2);
+  soup.triangles.erase(soup.triangles.begin() + 3);                          // of the top
+  soup.triangles.erase(soup.triangles.begin(), soup.triangles.begin() + 2);  // the bottom
   const Repaired result = repaired(soup);
   EXPECT_NEAR(volume_mm3(result.mesh), 1000, 1e-9);
   EXPECT_THAT(result.text, HasSubstr("holes_filled = 2"));

@@ -87,7 +87,7 @@ void expect_solid(const Made& made, int components = 1) {
   const Shell& shell = made.solid.shell;
   const double limit = ShapeSettings().max_tetrahedron_fraction * shell.volume_mm3;
   ASSERT_GT(mesh.count(), 0);
-  EXPECT_LT(mesh.count(), 150000);
+  EXPECT_LT(mesh.count(), 250000);
   double sum = 0;
   for (int t = 0; t < mesh.count(); ++t) {
     const double volume = mesh.volume_mm3(t);
