@@ -55,9 +55,11 @@ TEST(SmoothCuts, KeepsACubesFacesEdgesAndCorners) {
 
 TEST(SmoothCuts, MovesOnlyPointsOnCuts) {
   TetMesh mesh = fixtures::sphere_shell(4, 2, 100, 3);
-  Segments segments = segment(mesh, ShapeSettings(), 1, Progress());
+  ShapeSettings settings;
+  settings.clusters = 12;
+  Segments segments = segment(mesh, settings, 1, Progress());
   const std::vector<Vec3> before = mesh.points;
-  smooth_cuts(mesh, segments, ShapeSettings(), Progress());
+  smooth_cuts(mesh, segments, settings, Progress());
   const Stars stars(mesh);
   for (std::size_t i = 0; i < before.size(); ++i) {
     const auto star = stars.of(static_cast<int>(i));
@@ -75,8 +77,10 @@ TEST(SmoothCuts, KeepsASphereRoundWithinATenth) {
   Random random(2);
   fixtures::jitter(mesh, 0.1, random);
   const double volume = total_volume_mm3(mesh);
-  Segments segments = segment(mesh, ShapeSettings(), 1, Progress());
-  const CutRoughness roughness = smooth_cuts(mesh, segments, ShapeSettings(), Progress());
+  ShapeSettings settings;
+  settings.clusters = 12;
+  Segments segments = segment(mesh, settings, 1, Progress());
+  const CutRoughness roughness = smooth_cuts(mesh, segments, settings, Progress());
   EXPECT_LT(roughness.after_rad, roughness.before_rad / 2);
   checks::expect_sound_mesh(mesh, volume);
   checks::expect_proper_parts(mesh, segments);
@@ -111,6 +115,7 @@ RC_GTEST_PROP(SmoothCuts, InvertsNothingAndKeepsPartsProper, (std::uint64_t seed
   const double volume = total_volume_mm3(mesh);
   ShapeSettings settings;
   settings.clusters = 3 + static_cast<int>(random.below(30));
+  settings.smooth_rounds = 3;
   Segments segments = segment(mesh, settings, seed, Progress());
   segments = checks::randomly_merged(mesh, segments, 2 + static_cast<int>(random.below(8)), random);
   make_manifold(mesh, segments, Progress(), kFreeReach);
