@@ -102,8 +102,11 @@ fs::path make_folder(const fs::path& pattern) {
 
 std::string read_file(const fs::path& path, std::uint64_t max_bytes) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored))
-    throw Error(Fault::kNoInput, path.string() + " is a folder", "Name a file instead.");
+  const fs::file_status kind = fs::status(path, ignored);
+  if (fs::exists(kind) && !fs::is_regular_file(kind))
+    throw Error(Fault::kNoInput,
+                path.string() + (fs::is_directory(kind) ? " is a folder" : " is not a regular file"),
+                "Name a file instead.");
   const std::uint64_t size = fs::file_size(path, ignored);
   const auto refuse = [&] {
     throw Error(Fault::kBadInput,

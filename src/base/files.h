@@ -12,7 +12,8 @@ namespace packmerger {
 
 namespace fs = std::filesystem;
 
-// Reads a whole regular file. A file larger than max_bytes is refused before it is read.
+// Reads a whole regular file; pipes, devices and folders are refused, since they may never end. A
+// file larger than max_bytes is refused before it is read.
 std::string read_file(const fs::path& path, std::uint64_t max_bytes);
 
 // Writes bytes to path through a temporary sibling: write, fsync, rename, fsync of the folder.

@@ -31,7 +31,7 @@ void run(const Arguments& arguments) {
   }
   for (const Job& job : jobs) {
     all[job.profile.id] = comparison_json(job.estimates);
-    if (!arguments.json) fmt::print("{}\n", comparison_table(job.estimates, job.profile));
+    if (!arguments.json) fmt::print("{}\n", comparison_table(job.estimates, title_of(job.profile)));
     for (const Warning& warning : job.warnings)
       fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
   }

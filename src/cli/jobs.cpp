@@ -4,6 +4,8 @@
 
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
+#include "job/comparison_table.h"
+#include "tray/job_json.h"
 
 namespace packmerger::cli {
 namespace {
@@ -24,33 +26,6 @@ void list(const Arguments& arguments) {
   for (const json& job : jobs)
     rows.push_back({std::to_string(job.at("id").get<std::int64_t>()), text_of(job, "printer"),
                     text_of(job, "name"), text_of(job, "state"), text_of(job, "status")});
-  print_table(rows);
-}
-
-std::string figure(const json& estimate, const char* key, double factor, const char* format) {
-  const auto found = estimate.find(key);
-  if (found == estimate.end() || !found->is_number()) return "-";
-  return fmt::format(fmt::runtime(format), found->get<double>() * factor);
-}
-
-void print_estimates(const json& estimates) {
-  if (!estimates.is_object()) return;
-  std::vector<std::vector<std::string>> rows = {
-      {"", "TIME", "MODEL", "SUPPORT", "COST", "PARTS", "TRAYS"}};
-  for (const char* way : {"as_is", "solid", "hollow", "packed"}) {
-    const auto found = estimates.find(way);
-    if (found == estimates.end() || !found->is_object()) continue;
-    if (!found->value("fits", false)) {
-      rows.push_back({way, "does not fit", "", "", "", "", ""});
-      continue;
-    }
-    rows.push_back({way, figure(*found, "time_s", 1 / 3600.0, "{:.1f} h"),
-                    figure(*found, "model_g", 1, "{:.1f} g"),
-                    figure(*found, "support_g", 1, "{:.1f} g"),
-                    figure(*found, "cost", 1, "{:.2f} ") + text_of(*found, "currency"),
-                    figure(*found, "parts", 1, "{:.0f}"), figure(*found, "trays", 1, "{:.0f}")});
-  }
-  fmt::print("\n");
   print_table(rows);
 }
 
@@ -77,7 +52,9 @@ void show(const Arguments& arguments) {
   print_line("ended", time_text(job.value("ended_s", json())));
   print_line("folder", text_of(job, "folder"));
   print_line("model", text_of(job, "filed"));
-  print_estimates(job.value("estimates", json()));
+  const json estimates = job.value("estimates", json());
+  if (estimates.is_object())
+    fmt::print("\n{}", comparison_table(comparison_of(estimates), text_of(job, "printer")));
   print_history(job);
 }
 

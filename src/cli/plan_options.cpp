@@ -52,4 +52,8 @@ Profile chosen_profile(const std::string& id_or_path, const PlanArguments& argum
   return profile;
 }
 
+std::string title_of(const Profile& profile) {
+  return profile.name + " (" + profile.id + ")";
+}
+
 }  // namespace packmerger::cli

@@ -33,4 +33,7 @@ PlanOptions plan_options(const PlanArguments& arguments);
 // Reads the profile and applies --set.
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments);
 
+// The machine as the head of a table: "Objet30 (objet30)".
+std::string title_of(const Profile& profile);
+
 }  // namespace packmerger::cli

@@ -1,5 +1,6 @@
 #include "job/arrangement.h"
 
+#include "printers/slice.h"
 #include "printers/support_volume.h"
 
 namespace packmerger {
@@ -19,6 +20,12 @@ Assembly assembly_of(const Arrangement& arrangement) {
     assembly.joints += static_cast<int>(part.neighbours.size());
   assembly.joints /= 2;  // each is told by both sides
   return assembly;
+}
+
+Room room_of(const Profile& profile) {
+  const double margin = slicer_margin_mm(profile);
+  const Vec3 corner(margin, margin, 0);
+  return {corner, profile.build() - 2 * corner};
 }
 
 TrayMeasure measure(const Tray& tray, const Profile& profile) {

@@ -21,6 +21,14 @@ std::vector<Tray> trays_of(const Arrangement& arrangement);
 
 Assembly assembly_of(const Arrangement& arrangement);
 
+// Where parts may stand: the build volume less a margin for the support that a slicer puts beside
+// them. A part's place is counted from the volume's own corner.
+struct Room {
+  Vec3 corner_mm = Vec3::Zero();
+  Vec3 size_mm = Vec3::Zero();
+};
+Room room_of(const Profile& profile);
+
 // What the packer's objective sees, taken from the exact meshes.
 TrayMeasure measure(const Tray& tray, const Profile& profile);
 

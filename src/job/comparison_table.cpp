@@ -58,9 +58,9 @@ std::string spoken_time(double seconds) {
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
-std::string comparison_table(const Comparison& comparison, const Profile& profile) {
+std::string comparison_table(const Comparison& comparison, const std::string& title) {
   const Estimate* yardstick = cheapest_unpacked(comparison);
-  std::string text = fmt::format("{} ({})\n", profile.name, profile.id);
+  std::string text = title + "\n";
   text += fmt::format("{:<20} {:>12} {:>7} {:>11} {:>11} {:>7} {:>13} {:>7} {:>5} {:>5}\n", "",
                       "time", "", "model", "support", "", "cost", "", "parts", "trays");
   text += row("as the file stands", comparison.as_is, yardstick);

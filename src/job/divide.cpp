@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "job/arrangement.h"
 #include "shape/hollow.h"
-#include "shape/manifold_parts.h"
 #include "shape/premerge.h"
 #include "shape/segment.h"
 #include "shape/smooth_cuts.h"
@@ -19,15 +19,19 @@ Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std:
   divided.tets = std::move(solid.tets);
   divided.resample_tolerance_mm = solid.resample_tolerance_mm;
 
-  Segments clusters = segment(divided.tets, profile.shape, seed, progress);
-  make_manifold(divided.tets, clusters, progress, kFreeReach);
+  const Segments clusters = segment(divided.tets, profile.shape, seed, progress);
   divided.clusters = clusters.count;
 
-  const BuildVolume build{profile.build(), radians(profile.pack.rotation_step_deg)};
-  divided.segments = premerge(divided.tets, clusters, profile.shape, build, warnings, progress);
-
+  // Smoothing straightens cuts, which may bring a cross-section below the limit, so merging has the
+  // last word, and what it says then is what the user is told.
+  const BuildVolume build{room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
+  Warnings before_smoothing;
+  divided.segments =
+      premerge(divided.tets, clusters, profile.shape, build, before_smoothing, progress);
   const CutRoughness roughness =
       smooth_cuts(divided.tets, divided.segments, profile.shape, progress);
+  divided.segments =
+      premerge(divided.tets, divided.segments, profile.shape, build, warnings, progress);
   divided.roughness_before = roughness.before_rad;
   divided.roughness_after = roughness.after_rad;
   return divided;

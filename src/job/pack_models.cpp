@@ -40,7 +40,7 @@ PackProblem problem_of(const Models& models, const Profile& profile, std::uint64
     for (const SegmentEdge& edge : adjacency(model.tets, model.segments))
       problem.edges.push_back({edge.a + first, edge.b + first, edge.area_mm2});
   }
-  problem.build_mm = profile.build();
+  problem.build_mm = room_of(profile).size_mm;
   problem.gap_mm = profile.pack.gap_mm;
   problem.grid_mm = profile.pack.grid_mm;
   problem.rotation_step = radians(profile.pack.rotation_step_deg);
@@ -80,8 +80,9 @@ void extract_parts(const Divided& model, int first_item, const std::vector<int>&
   }
 }
 
+// room: the packer's tray within the printer's.
 Arrangement arrange(const Models& models, const PackProblem& problem, const Packing& packing,
-                    const Progress& progress) {
+                    const Room& room, const Progress& progress) {
   const std::vector<int> first = first_items(models);
   Arrangement arrangement;
   arrangement.trays = static_cast<int>(packing.trays.size());
@@ -93,6 +94,7 @@ Arrangement arrange(const Models& models, const PackProblem& problem, const Pack
     part.model = problem.items[from.items.front()].model;
     part.tray = from.tray + 1;
     part.pose = from.pose;
+    part.pose.pretranslate(room.corner_mm);
     placed[part.model].push_back(i);
     arrangement.parts.push_back(std::move(part));
   }
@@ -121,14 +123,15 @@ void lift_above_plate(Arrangement& arrangement) {
 // By how much the worst promise on distances is missed, mm; at most 0 when all are kept.
 double shortfall(const Arrangement& arrangement, const Profile& profile) {
   constexpr double kRounding = 1e-4;  // what single precision in the files may take, mm
+  const Room room = room_of(profile);
   double worst = 0;
   for (const Tray& tray : trays_of(arrangement)) {
     const double gap = least_gap_mm(tray.parts, profile.pack.gap_mm);
     worst = std::max(worst, profile.pack.gap_mm - gap - kRounding);
     for (const Mesh& part : tray.parts) {
       const Box3 box = bounding_box(part);
-      worst = std::max({worst, -box.min().minCoeff() - kRounding,
-                        (box.max() - profile.build()).maxCoeff() - kRounding});
+      worst = std::max({worst, (room.corner_mm - box.min()).maxCoeff() - kRounding,
+                        (box.max() - room.corner_mm - room.size_mm).maxCoeff() - kRounding});
     }
   }
   return worst;
@@ -142,7 +145,7 @@ Arrangement pack_models(const Models& models, const Profile& profile, std::uint6
   double missing = 0;
   for (int attempt = 0; attempt < 3; ++attempt) {
     const Packing packing = pack(problem, progress);
-    Arrangement arrangement = arrange(models, problem, packing, progress);
+    Arrangement arrangement = arrange(models, problem, packing, room_of(profile), progress);
     lift_above_plate(arrangement);
     missing = shortfall(arrangement, profile);
     if (missing <= 0) return arrangement;

@@ -53,7 +53,7 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
   job.removal_order = std::move(arrangement.removal_order);
 }
 
-std::vector<TrayFiles> programs(const Job& job, const std::vector<Tray>& trays,
+std::vector<TrayFiles> programs(Job& job, const std::vector<Tray>& trays,
                                 const Progress& progress) {
   std::vector<TrayFiles> files;
   for (std::size_t i = 0; i < trays.size(); ++i) {
@@ -65,6 +65,7 @@ std::vector<TrayFiles> programs(const Job& job, const std::vector<Tray>& trays,
     if (program) {
       tray.program_extension = program->extension;
       tray.program = std::move(program->bytes);
+      job.warnings.insert(job.warnings.end(), program->warnings.begin(), program->warnings.end());
     }
     files.push_back(std::move(tray));
   }

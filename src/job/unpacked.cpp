@@ -61,8 +61,9 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     boxes.push_back(turned_box(*models[m], ways[m]));
     sizes.push_back(boxes.back().sizes().head<2>());
   }
+  const Room room = room_of(profile);
   const std::vector<Slot> slots =
-      side_by_side(sizes, profile.build().head<2>(), profile.pack.gap_mm);
+      side_by_side(sizes, room.size_mm.head<2>(), profile.pack.gap_mm);
   Arrangement arrangement;
   for (std::size_t m = 0; m < models.size(); ++m) {
     JobPart part;
@@ -71,7 +72,7 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     part.tray = slots[m].tray + 1;
     part.surface = *models[m];
     part.volume_mm3 = volume_mm3(*models[m]);
-    part.pose = standing_at(ways[m], boxes[m], slots[m].corner);
+    part.pose = standing_at(ways[m], boxes[m], slots[m].corner + room.corner_mm.head<2>());
     arrangement.trays = std::max(arrangement.trays, part.tray);
     arrangement.removal_order.push_back(part.id);
     arrangement.parts.push_back(std::move(part));
@@ -85,7 +86,7 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
   std::vector<Rank> ranks(ways.size(), {std::numeric_limits<double>::infinity(), 0, 0});
   parallel_for(ways.size(), [&](std::size_t i) {
     const Box3 box = turned_box(model, ways[i]);
-    if (!fits(box.sizes(), profile.build())) return;
+    if (!fits(box.sizes(), room_of(profile).size_mm)) return;
     Tray tray;
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
     const Estimate one = estimate(profile, {tray}, Assembly{}, progress);
@@ -136,7 +137,7 @@ std::vector<Slot> side_by_side(const std::vector<Vec2>& sizes, const Vec2& tray_
 
 std::optional<Arrangement> stand_as_is(const WholeModels& models, const Profile& profile) {
   for (const auto& model : models)
-    if (!fits(bounding_box(*model).sizes(), profile.build())) return std::nullopt;
+    if (!fits(bounding_box(*model).sizes(), room_of(profile).size_mm)) return std::nullopt;
   return arrange(models, std::vector<Mat3>(models.size(), Mat3::Identity()), profile);
 }
 

@@ -17,7 +17,7 @@ namespace packmerger {
 enum class Technology { kPolyjet, kFdm };
 enum class Dialect { kHandoff, kGcode, kS3g };          // what the printer is given
 enum class Objective { kPaper, kPrinter, kHeight };     // what the packer minimises
-enum class Segmentation { kPaper, kPrinter };
+enum class Segmentation { kPaper };             // how the shell is divided
 enum class Origin { kFrontLeft, kCenter };              // of the machine's own coordinates
 enum class FdmTime { kDeposition, kToolpath };          // which FDM estimator fits the machine
 enum class HandoffDocument { kTrayStl, kTray3mf };

@@ -34,6 +34,24 @@ Json estimate_json(const std::optional<Estimate>& estimate) {
           {"source", estimate->source == EstimateSource::kSlicer ? "slicer" : "model"}};
 }
 
+std::optional<Estimate> estimate_of(const Json& json) {
+  if (!json.at("fits").get<bool>()) return std::nullopt;
+  Estimate estimate;
+  estimate.time_s = json.at("time_s");
+  estimate.model_mm3 = json.at("model_mm3");
+  estimate.model_g = json.at("model_g");
+  estimate.support_mm3 = json.at("support_mm3");
+  estimate.support_g = json.at("support_g");
+  estimate.cost = json.at("cost");
+  estimate.currency = json.at("currency");
+  estimate.parts = json.at("parts");
+  estimate.trays = json.at("trays");
+  estimate.assembly_min = json.at("assembly_min");
+  estimate.source =
+      json.at("source") == "slicer" ? EstimateSource::kSlicer : EstimateSource::kModel;
+  return estimate;
+}
+
 struct SettingJson {
   Json operator()(const NumberKey& key) const { return *key.value; }
   Json operator()(const IntegerKey& key) const { return *key.value; }
@@ -113,6 +131,11 @@ Json comparison_json(const Comparison& comparison) {
           {"solid", estimate_json(comparison.solid)},
           {"hollow", estimate_json(comparison.hollow)},
           {"packed", estimate_json(comparison.packed)}};
+}
+
+Comparison comparison_of(const Json& json) {
+  return {estimate_of(json.at("as_is")), estimate_of(json.at("solid")),
+          estimate_of(json.at("hollow")), estimate_of(json.at("packed"))};
 }
 
 Json job_json(const Job& job) {

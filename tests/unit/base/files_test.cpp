@@ -51,7 +51,9 @@ TEST(Files, RefusesWhatIsTooLargeMissingOrAFolder) {
   EXPECT_EQ(fault_of([&] { read_file(folder.path() / "big", 999); }), Fault::kBadInput);
   EXPECT_EQ(fault_of([&] { read_file(folder.path() / "none", 999); }), Fault::kNoInput);
   EXPECT_EQ(fault_of([&] { read_file(folder.path(), 999); }), Fault::kNoInput);
-  EXPECT_EQ(fault_of([] { read_file("/dev/zero", 1 << 20); }), Fault::kBadInput);
+  EXPECT_EQ(fault_of([] { read_file("/dev/zero", 1 << 20); }), Fault::kNoInput);
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(fault_of([&] { read_file(folder.path() / "pipe", 999); }), Fault::kNoInput);
 }
 
 TEST(Files, Sha256OfKnownStrings) {

@@ -2,6 +2,7 @@
 
 #include "job/comparison_table.h"
 #include "job/prepare.h"
+#include "tray/job_json.h"
 
 namespace packmerger {
 namespace {
@@ -53,10 +54,19 @@ TEST(Table, ShowsEveryWayAndWhatDoesNotFit) {
   Comparison ways;
   ways.solid = costing(10, 7260);
   ways.packed = costing(6, 3630);
-  const std::string table = comparison_table(ways, read_profile("objet30"));
+  const std::string table = comparison_table(ways, "Objet30");
   EXPECT_NE(table.find("2 h 01 min"), std::string::npos) << table;
   EXPECT_NE(table.find("-50 %"), std::string::npos) << table;
   EXPECT_NE(table.find("hollow, one piece    does not fit"), std::string::npos) << table;
+}
+
+TEST(Table, IsTheSameFromJson) {
+  Comparison ways;
+  ways.solid = costing(10, 7260);
+  ways.packed = costing(6, 3630);
+  ways.packed->source = EstimateSource::kSlicer;
+  const Comparison again = comparison_of(comparison_json(ways));
+  EXPECT_EQ(comparison_table(again, "x"), comparison_table(ways, "x"));
 }
 
 TEST(SpokenTime, RoundsOnce) {
