@@ -143,7 +143,8 @@ std::vector<Plan> plans(std::vector<Configuration> configurations) {
   configurations.resize(std::min(configurations.size(), kPlacedConfigurations));
   std::vector<Plan> result;
   result.push_back({unmerged.parts, unmerged.order, Effort::kAlone});
-  result.push_back({configurations[0].parts, configurations[0].order, Effort::kAlone});
+  if (configurations[0].parts != unmerged.parts)
+    result.push_back({configurations[0].parts, configurations[0].order, Effort::kAlone});
   for (const Configuration& configuration : configurations) {
     result.push_back({configuration.parts, configuration.order, Effort::kSearch});
     result.push_back({configuration.parts, configuration.order, Effort::kPlace});

@@ -93,9 +93,9 @@ class Rating {
     if (!std::isfinite(limit) || high <= low) return high;
     // The box grows least where the part lies within the contents' extent, or nearest to that.
     const double inside =
-        (tray_.contents.min().x() - rotated_.box.min().x()) / rules_.grid_mm / step;
+        tray_.parts == 0 ? 0 : (tray_.contents.min().x() - rotated_.box.min().x()) / rules_.grid_mm;
     const int before =
-        std::clamp(static_cast<int>(std::floor(inside)), columns.first, columns.last);
+        std::clamp(static_cast<int>(std::floor(inside / step)), columns.first, columns.last);
     const int behind = std::clamp(before + 1, columns.first, columns.last);
     constexpr int kHalvings = 10;
     for (int i = 0; i < kHalvings; ++i) {

@@ -113,7 +113,7 @@ PackProblem sphere_problem(double radius) {
 }
 
 TEST(Pack, SameAnswerOnOneThreadAndOnTwoAndForTheSameSeed) {
-  PackProblem problem = sphere_problem(30);
+  PackProblem problem = sphere_problem(20);
   problem.tabu_patience = 3;
   problem.seed = 7;
   const Packing first = pack(problem, {});
@@ -124,7 +124,8 @@ TEST(Pack, SameAnswerOnOneThreadAndOnTwoAndForTheSameSeed) {
 }
 
 TEST(Pack, SegmentsOfASphereNestAndKeepEveryPromise) {
-  const PackProblem problem = sphere_problem(50);
+  PackProblem problem = sphere_problem(50);
+  problem.rotation_step = radians(90);
   const Packing packing = pack(problem, {});
   check::expect_valid(problem, packing, 1);
   ASSERT_EQ(packing.trays.size(), 1U);
@@ -276,7 +277,7 @@ TEST(Pack, CanBeCancelledAndReportsProgress) {
 }
 
 TEST(Pack, TheClockEndsTheSearch) {
-  PackProblem problem = sphere_problem(50);
+  PackProblem problem = sphere_problem(20);
   problem.tabu_patience = 100000;
   problem.budget_s = 1;
   const auto start = std::chrono::steady_clock::now();
