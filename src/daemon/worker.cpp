@@ -71,6 +71,18 @@ Prepared prepare(const PrepareOrder& order, Queue<Event>& events, const PrepareC
   return {order.job, job.trays, job.estimates, pays(job.estimates, order.variant)};
 }
 
+Event prepare_or_fail(const PrepareOrder& order, Queue<Event>& events,
+                      const PrepareConfig& config) {
+  try {
+    return prepare(order, events, config);
+  } catch (const Error& error) {
+    return PrepareFailed{order.job, {error.fault(), error.what(), error.hint()}};
+  } catch (const std::exception& error) {
+    return PrepareFailed{order.job,
+                         {Fault::kInternal, error.what(), "Look into the daemon's messages."}};
+  }
+}
+
 }  // namespace
 
 std::optional<ProgressLine> progress_line(std::string_view line) {
@@ -112,16 +124,9 @@ Failure child_failure(int exit_code, int signal, std::string_view standard_error
 
 void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events, const PrepareConfig& config) {
   while (const std::optional<PrepareOrder> order = orders.pop()) {
-    try {
-      const Prepared prepared = prepare(*order, events, config);
-      events.push(prepared);
-    } catch (const Error& error) {
-      events.push(PrepareFailed{order->job, {error.fault(), error.what(), error.hint()}});
-    } catch (const std::exception& error) {
-      events.push(PrepareFailed{
-          order->job, {Fault::kInternal, error.what(), "Look into the daemon's messages."}});
-    }
+    Event end = prepare_or_fail(*order, events, config);
     remove_leftovers(order->out, order->out.parent_path() / "tmp");
+    events.push(std::move(end));  // last: whoever hears of it may use the folder
   }
 }
 
