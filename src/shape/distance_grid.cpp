@@ -84,11 +84,7 @@ std::vector<Layer> layers_of(const Mesh& mesh) {
   for (const TriangleSoup& part : parts) {
     const bool is_matter = signed_volume_mm3(part) >= 0;
     if (layers.empty() || layers.back().is_matter != is_matter) layers.push_back({is_matter, {}});
-    TriangleSoup& soup = layers.back().soup;
-    const int base = static_cast<int>(soup.points.size());
-    soup.points.insert(soup.points.end(), part.points.begin(), part.points.end());
-    for (const auto& [a, b, c] : part.triangles)
-      soup.triangles.push_back({a + base, b + base, c + base});
+    append(layers.back().soup, part);
   }
   return layers;
 }

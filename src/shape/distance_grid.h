@@ -1,5 +1,5 @@
-// Signed distance to a surface on a sparse grid, and its levels as surfaces: OpenVDB, which no other
-// file includes.
+// Signed distance to a surface on a sparse grid, and its levels as surfaces: OpenVDB, which no
+// other file includes.
 #pragma once
 
 #include <memory>
@@ -22,8 +22,8 @@ class DistanceGrid {
   ~DistanceGrid();
 
   // The surface around what is less than level_mm outside (negative: more than that inside), closed
-  // and manifold, normals pointing away from it; possibly empty. Where the level pinches itself, the
-  // enclosed side gives way, by up to a voxel, and the grid keeps that.
+  // and manifold, normals pointing away from it; possibly empty. Where the level pinches itself,
+  // the enclosed side gives way, by up to a voxel, and the grid keeps that.
   TriangleSoup level(double level_mm, const Progress& progress);
 
  private:

@@ -36,7 +36,8 @@ double distance_to(const SurfaceQuery& outer, const TriangleSoup& soup) {
     const Vec3& pb = soup.points[b];
     const Vec3& pc = soup.points[c];
     double least = outer.distance_mm((pa + pb + pc) / 3);
-    for (const Vec3& p : {pa, pb, pc, Vec3((pa + pb) / 2), Vec3((pb + pc) / 2), Vec3((pc + pa) / 2)})
+    for (const Vec3& p :
+         {pa, pb, pc, Vec3((pa + pb) / 2), Vec3((pb + pc) / 2), Vec3((pc + pa) / 2)})
       least = std::min(least, outer.distance_mm(p));
     distances[i] = least;
   });
@@ -94,11 +95,6 @@ std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& out
               "Change wall_mm or lower voxel_mm a little and try again.");
 }
 
-TriangleSoup turned(TriangleSoup soup) {
-  for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-  return soup;
-}
-
 // The model's own cavities whose wall would float free in the new cavities join them.
 Mesh without_swallowed_cavities(const Mesh& outer, const std::vector<TriangleSoup>& hollows) {
   const std::vector<TriangleSoup> parts = split_components(to_soup(outer));
@@ -125,8 +121,7 @@ double thin_share(const Mesh& outer, const SurfaceQuery& query, double wall_mm) 
   std::vector<char> thin(soup.triangles.size());
   parallel_for(soup.triangles.size(), [&](std::size_t i) {
     const auto& [a, b, c] = soup.triangles[i];
-    const Vec3 normal =
-        (soup.points[b] - soup.points[a]).cross(soup.points[c] - soup.points[a]);
+    const Vec3 normal = (soup.points[b] - soup.points[a]).cross(soup.points[c] - soup.points[a]);
     areas[i] = normal.norm() / 2;
     if (!(areas[i] > 0)) return;
     const Vec3 middle = (soup.points[a] + soup.points[b] + soup.points[c]) / 3;
@@ -148,10 +143,10 @@ void warn(const Shell& shell, double thin, Warnings& warnings) {
   if (!shell.cavities.empty()) {
     double space = 0;
     for (const Mesh& cavity : shell.cavities) space += std::abs(volume_mm3(cavity));
-    warnings.push_back({"sealed_cavity",
-                        "Printed in one piece, the hollowed model traps support or powder in " +
-                            std::to_string(shell.cavities.size()) + " sealed cavities of " +
-                            rounded(space) + " mm³"});
+    warnings.push_back(
+        {"sealed_cavity", "Printed in one piece, the hollowed model traps support or powder in " +
+                              std::to_string(shell.cavities.size()) + " sealed cavities of " +
+                              rounded(space) + " mm³"});
   }
   if (thin > kThinShare)
     warnings.push_back({"thin_features", rounded(100 * thin) +

@@ -44,7 +44,8 @@ TriangleSoup cut_pieces(const Mesh& mesh) {
   for (const auto vertex : cut.vertices()) {
     number[vertex.idx()] = static_cast<int>(soup.points.size());
     const Kernel::Point_3& p = cut.point(vertex);
-    soup.points.emplace_back(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+    soup.points.emplace_back(CGAL::to_double(p.x()), CGAL::to_double(p.y()),
+                             CGAL::to_double(p.z()));
   }
   for (const auto face : cut.faces()) {
     std::array<int, 3> triangle{};

@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
-#include <pugixml.hpp>
 #include <zip.h>
+#include <pugixml.hpp>
 
 #include "base/error.h"
 #include "shape/formats.h"
@@ -106,7 +106,7 @@ std::string model_part(const Archive& archive) {
 
 double unit_mm(const std::string& unit) {
   static const std::map<std::string, double> kUnits = {
-      {"", 1},      {"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10},
+      {"", 1},        {"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10},
       {"inch", 25.4}, {"foot", 304.8},  {"meter", 1000}};
   const auto found = kUnits.find(unit);
   if (found == kUnits.end()) refuse_file("its unit is not one of 3MF's");
@@ -137,7 +137,8 @@ Transform transform_of(const pugi::xml_node& node) {
     for (int column = 0; column < 3; ++column)
       transform.linear(column, row) = numbers[3 * row + column];
   transform.offset = {numbers[9], numbers[10], numbers[11]};
-  if (!(std::abs(transform.linear.determinant()) > 0)) refuse_file("a transform flattens its object");
+  if (!(std::abs(transform.linear.determinant()) > 0))
+    refuse_file("a transform flattens its object");
   return transform;
 }
 
@@ -240,8 +241,9 @@ void refuse_required_extensions(const pugi::xml_node& model) {
     const std::string uri = model.attribute(("xmlns:" + std::string(prefix)).c_str()).value();
     if (std::find(kHarmlessExtensions.begin(), kHarmlessExtensions.end(), uri) ==
         kHarmlessExtensions.end())
-      throw Error(Fault::kBadInput, "The 3MF file requires an extension that is not supported (" +
-                                        (uri.empty() ? std::string(prefix) : uri) + ")",
+      throw Error(Fault::kBadInput,
+                  "The 3MF file requires an extension that is not supported (" +
+                      (uri.empty() ? std::string(prefix) : uri) + ")",
                   "Export it as core 3MF, or as STL.");
   }
 }

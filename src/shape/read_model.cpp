@@ -41,8 +41,7 @@ void check(const TriangleSoup& soup) {
     throw Error(Fault::kBadInput, "The model file holds no triangles",
                 "Export the model as a mesh, for example as STL or 3MF.");
   for (const Vec3& point : soup.points) {
-    if (!point.allFinite())
-      refuse_file("it holds coordinates that are not finite numbers");
+    if (!point.allFinite()) refuse_file("it holds coordinates that are not finite numbers");
     if (point.cwiseAbs().maxCoeff() > kMaxCoordinate)
       refuse_file("it holds coordinates beyond a thousand million");
   }

@@ -18,8 +18,7 @@ std::string_view next_line(LineReader& lines) {
 
 std::int64_t take_count(std::string_view& text, int line) {
   const auto count = to_integer(take_word(text));
-  if (!count || *count < 0)
-    refuse_file("a count was expected in line " + std::to_string(line));
+  if (!count || *count < 0) refuse_file("a count was expected in line " + std::to_string(line));
   return *count;
 }
 

@@ -20,11 +20,21 @@ enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDoub
 
 std::optional<Type> type_named(std::string_view name) {
   static constexpr std::array<std::pair<std::string_view, Type>, 16> kNames = {{
-      {"char", Type::kInt8},     {"int8", Type::kInt8},       {"uchar", Type::kUint8},
-      {"uint8", Type::kUint8},   {"short", Type::kInt16},     {"int16", Type::kInt16},
-      {"ushort", Type::kUint16}, {"uint16", Type::kUint16},   {"int", Type::kInt32},
-      {"int32", Type::kInt32},   {"uint", Type::kUint32},     {"uint32", Type::kUint32},
-      {"float", Type::kFloat},   {"float32", Type::kFloat},   {"double", Type::kDouble},
+      {"char", Type::kInt8},
+      {"int8", Type::kInt8},
+      {"uchar", Type::kUint8},
+      {"uint8", Type::kUint8},
+      {"short", Type::kInt16},
+      {"int16", Type::kInt16},
+      {"ushort", Type::kUint16},
+      {"uint16", Type::kUint16},
+      {"int", Type::kInt32},
+      {"int32", Type::kInt32},
+      {"uint", Type::kUint32},
+      {"uint32", Type::kUint32},
+      {"float", Type::kFloat},
+      {"float32", Type::kFloat},
+      {"double", Type::kDouble},
       {"float64", Type::kDouble},
   }};
   for (const auto& [known, type] : kNames)
@@ -128,14 +138,22 @@ class Body {
     if ((coding_ == Coding::kBig) == (std::endian::native == std::endian::little))
       std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     switch (type) {
-      case Type::kInt8: return as<std::int8_t>(bytes);
-      case Type::kUint8: return as<std::uint8_t>(bytes);
-      case Type::kInt16: return as<std::int16_t>(bytes);
-      case Type::kUint16: return as<std::uint16_t>(bytes);
-      case Type::kInt32: return as<std::int32_t>(bytes);
-      case Type::kUint32: return as<std::uint32_t>(bytes);
-      case Type::kFloat: return static_cast<double>(as<float>(bytes));
-      case Type::kDouble: return as<double>(bytes);
+      case Type::kInt8:
+        return as<std::int8_t>(bytes);
+      case Type::kUint8:
+        return as<std::uint8_t>(bytes);
+      case Type::kInt16:
+        return as<std::int16_t>(bytes);
+      case Type::kUint16:
+        return as<std::uint16_t>(bytes);
+      case Type::kInt32:
+        return as<std::int32_t>(bytes);
+      case Type::kUint32:
+        return as<std::uint32_t>(bytes);
+      case Type::kFloat:
+        return static_cast<double>(as<float>(bytes));
+      case Type::kDouble:
+        return as<double>(bytes);
     }
     return 0;
   }
@@ -151,7 +169,8 @@ class Body {
   bool could_hold(const Element& element) const {
     std::size_t least = 0;
     for (const Property& property : element.properties)
-      least += coding_ == Coding::kAscii ? 1 : size_of(property.length_type.value_or(property.type));
+      least +=
+          coding_ == Coding::kAscii ? 1 : size_of(property.length_type.value_or(property.type));
     return least == 0 || static_cast<std::uint64_t>(element.count) <= rest_.size() / least;
   }
 

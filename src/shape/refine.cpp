@@ -18,7 +18,8 @@ Edge edge_of(int a, int b) { return a < b ? Edge(a, b) : Edge(b, a); }
 
 struct EdgeHash {
   std::size_t operator()(const Edge& edge) const {
-    return (static_cast<std::uint64_t>(edge.first) << 32 | static_cast<std::uint32_t>(edge.second)) *
+    return (static_cast<std::uint64_t>(edge.first) << 32 |
+            static_cast<std::uint32_t>(edge.second)) *
            0x9e3779b97f4a7c15ull;
   }
 };
@@ -127,8 +128,9 @@ class TetSplitter {
     LongEdge longest(-1, 0, 0);
     for (int i = 0; i < 4; ++i)
       for (int k = i + 1; k < 4; ++k)
-        longest = std::max(longest, LongEdge((mesh_.points[c[i]] - mesh_.points[c[k]]).squaredNorm(),
-                                             -std::min(c[i], c[k]), -std::max(c[i], c[k])));
+        longest =
+            std::max(longest, LongEdge((mesh_.points[c[i]] - mesh_.points[c[k]]).squaredNorm(),
+                                       -std::min(c[i], c[k]), -std::max(c[i], c[k])));
     return longest;
   }
 

@@ -13,9 +13,10 @@ namespace packmerger {
 // soup: closed, manifold. markers: one per triangle.
 void split_long_edges(TriangleSoup& soup, std::vector<int>& markers, double max_edge_mm);
 
-// Halves edges of tetrahedra that hold more than max_volume_mm3 until none does; of each the longest
-// edge, unless a neighbour around it has a longer one (longest-edge propagation, Rivara), so shapes
-// do not degrade. The points there were keep their numbers; neighbours and sides are kept true.
+// Halves edges of tetrahedra that hold more than max_volume_mm3 until none does; of each the
+// longest edge, unless a neighbour around it has a longer one (longest-edge propagation, Rivara),
+// so shapes do not degrade. The points there were keep their numbers; neighbours and sides are kept
+// true.
 void split_large_tetrahedra(TetMesh& mesh, double max_volume_mm3);
 
 }  // namespace packmerger

@@ -56,8 +56,9 @@ struct Counts {
 };
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw Error(Fault::kBadInput, "No closed surface can be made of the model: " + why,
-              "Repair it in a mesh editor (Blender: 3D-Print Toolbox, Make Manifold) and try again.");
+  throw Error(
+      Fault::kBadInput, "No closed surface can be made of the model: " + why,
+      "Repair it in a mesh editor (Blender: 3D-Print Toolbox, Make Manifold) and try again.");
 }
 
 CgalMesh to_cgal(const TriangleSoup& soup) {
@@ -88,14 +89,15 @@ TriangleSoup from_cgal(const CgalMesh& mesh) {
   return soup;
 }
 
-// Neighbouring triangles turned alike; where more than two meet at an edge the sheets are cut apart.
+// Neighbouring triangles turned alike; where more than two meet at an edge the sheets are cut
+// apart.
 CgalMesh oriented(const TriangleSoup& soup, Counts& counts) {
   std::vector<Kernel::Point_3> points;
   for (const Vec3& p : soup.points) points.emplace_back(p.x(), p.y(), p.z());
   std::vector<std::vector<std::size_t>> polygons;
   for (const auto& [a, b, c] : soup.triangles)
-    polygons.push_back({static_cast<std::size_t>(a), static_cast<std::size_t>(b),
-                        static_cast<std::size_t>(c)});
+    polygons.push_back(
+        {static_cast<std::size_t>(a), static_cast<std::size_t>(b), static_cast<std::size_t>(c)});
   pmp::orient_polygon_soup(points, polygons);
 
   int reversed = 0;
@@ -105,11 +107,12 @@ CgalMesh oriented(const TriangleSoup& soup, Counts& counts) {
     const auto place = [&](std::size_t corner) {
       return Vec3(points[corner].x(), points[corner].y(), points[corner].z());
     };
-    const auto first = std::find_if(polygons[i].begin(), polygons[i].end(), [&](std::size_t corner) {
-      return place(corner) == soup.points[before[0]];
-    });
+    const auto first =
+        std::find_if(polygons[i].begin(), polygons[i].end(),
+                     [&](std::size_t corner) { return place(corner) == soup.points[before[0]]; });
     if (first == polygons[i].end()) continue;
-    const std::size_t next = polygons[i][static_cast<std::size_t>((first - polygons[i].begin() + 1) % 3)];
+    const std::size_t next =
+        polygons[i][static_cast<std::size_t>((first - polygons[i].begin() + 1) % 3)];
     if (place(next) != soup.points[before[1]]) ++reversed;
   }
   // Which of the two ways is turned is arbitrary until the outside is known.
@@ -148,10 +151,7 @@ TriangleSoup without_open_shards(const TriangleSoup& soup, Counts& counts) {
       counts.facets_removed += static_cast<int>(part.triangles.size());
       continue;
     }
-    const int base = static_cast<int>(kept.points.size());
-    kept.points.insert(kept.points.end(), part.points.begin(), part.points.end());
-    for (const auto& [a, b, c] : part.triangles)
-      kept.triangles.push_back({a + base, b + base, c + base});
+    append(kept, part);
   }
   return kept;
 }
@@ -203,7 +203,8 @@ std::vector<int> nesting_depths(const std::vector<TriangleSoup>& parts) {
   return depths;
 }
 
-// Each component out of the matter: one held by an odd number of others is a cavity. Flat sheets go.
+// Each component out of the matter: one held by an odd number of others is a cavity. Flat sheets
+// go.
 int orient_outwards(TriangleSoup& soup, Counts& counts) {
   const double diagonal = bounding_box(soup).diagonal().norm();
   const Components components = components_of(soup);
@@ -274,8 +275,6 @@ Mesh repair(const TriangleSoup& input, Warnings& warnings, const Progress& progr
   return mesh;
 }
 
-bool self_intersects(const Mesh& mesh) {
-  return pmp::does_self_intersect(to_cgal(to_soup(mesh)));
-}
+bool self_intersects(const Mesh& mesh) { return pmp::does_self_intersect(to_cgal(to_soup(mesh))); }
 
 }  // namespace packmerger

@@ -28,6 +28,7 @@ constexpr double kBand = 2;  // voxels on both sides
 constexpr double kMaxVoxels = 6e7;
 constexpr double kCoarsening = 0.2;    // of the tolerance
 constexpr double kLongestEdge = 0.04;  // of the diagonal
+constexpr double kStep = 0.01;         // of the diagonal, see resample.h
 // Between sheets of the hull that would touch, of the tolerance.
 constexpr double kGap = 0.1;
 // Components smaller than this many voxels are grains of the grid, not of the model.
@@ -40,13 +41,15 @@ std::vector<Vec3> spread(const Vec3& a, const Vec3& b, const Vec3& c, double ste
   std::vector<Vec3> points;
   for (int i = 0; i <= n; ++i)
     for (int j = 0; i + j <= n; ++j)
-      points.push_back(a + (b - a) * (static_cast<double>(i) / n) + (c - a) * (static_cast<double>(j) / n));
+      points.push_back(a + (b - a) * (static_cast<double>(i) / n) +
+                       (c - a) * (static_cast<double>(j) / n));
   return points;
 }
 
 // The largest distance from points on soup to target, over points that `counts` accepts.
 template <typename Counts>
-double furthest(const TriangleSoup& soup, const SurfaceQuery& target, double step, const Counts& counts) {
+double furthest(const TriangleSoup& soup, const SurfaceQuery& target, double step,
+                const Counts& counts) {
   std::vector<double> of_triangle(soup.triangles.size(), 0);
   parallel_for(soup.triangles.size(), [&](std::size_t i) {
     const auto& [a, b, c] = soup.triangles[i];
@@ -79,10 +82,7 @@ std::optional<TriangleSoup> without_grains(const TriangleSoup& soup, double voxe
   TriangleSoup kept;
   for (const TriangleSoup& part : split_components(soup)) {
     if (std::abs(signed_volume_mm3(part)) < kGrain * voxel_mm * voxel_mm * voxel_mm) continue;
-    const int base = static_cast<int>(kept.points.size());
-    kept.points.insert(kept.points.end(), part.points.begin(), part.points.end());
-    for (const auto& [a, b, c] : part.triangles)
-      kept.triangles.push_back({a + base, b + base, c + base});
+    append(kept, part);
   }
   if (kept.triangles.empty()) return std::nullopt;
   return kept;
@@ -112,10 +112,19 @@ std::optional<Mesh> clean(const TriangleSoup& fine, const SurfaceQuery& model, d
 
 // Where surfaces are compared, and how closely.
 struct Measure {
+  Measure(const Mesh& mesh, const TriangleSoup& soup, const SurfaceQuery& soup_query,
+          double tolerance)
+      : model(soup), query(soup_query), tolerance_mm(tolerance) {
+    const double size = bounding_box(mesh).diagonal().norm();
+    step_mm = std::max(tolerance, kStep * size);
+    max_edge_mm = kLongestEdge * size;
+  }
+
   const TriangleSoup& model;
   const SurfaceQuery& query;
-  double step_mm;
   double tolerance_mm;
+  double step_mm = 0;
+  double max_edge_mm = 0;  // of a coarsened surface
   double best_mm = std::numeric_limits<double>::infinity();
 
   // The surface with its deviation, if it may stand in for the model.
@@ -128,23 +137,21 @@ struct Measure {
 };
 
 // The exact outside, coarsened a little where rounding made its pieces cross again.
-std::optional<Resampled> from_hull(const Mesh& mesh, double max_edge_mm, Measure& measure,
-                                   const Progress& progress) {
+std::optional<Resampled> from_hull(const Mesh& mesh, Measure& measure, const Progress& progress) {
   const auto hull = outer_hull(mesh, kGap * measure.tolerance_mm, progress);
   if (!hull) return std::nullopt;
   if (!self_intersects(*hull))
     if (auto result = measure.accepted(*hull)) return result;
   for (const double fraction : {0.05, 0.15, 0.3}) {
-    Mesh coarse =
-        closed_mesh(coarsened(to_soup(*hull), fraction * measure.tolerance_mm, max_edge_mm));
+    Mesh coarse = closed_mesh(
+        coarsened(to_soup(*hull), fraction * measure.tolerance_mm, measure.max_edge_mm));
     if (self_intersects(coarse)) continue;
     if (auto result = measure.accepted(std::move(coarse))) return result;
   }
   return std::nullopt;
 }
 
-std::optional<Resampled> from_grid(const Mesh& mesh, double max_edge_mm, Measure& measure,
-                                   const Progress& progress) {
+std::optional<Resampled> from_grid(const Mesh& mesh, Measure& measure, const Progress& progress) {
   const double area = area_mm2(mesh);
   for (std::size_t round = 0; round < kVoxels.size(); ++round) {
     progress.report("re-sampling", static_cast<double>(round + 1) / (kVoxels.size() + 1));
@@ -153,7 +160,7 @@ std::optional<Resampled> from_grid(const Mesh& mesh, double max_edge_mm, Measure
     DistanceGrid grid(mesh, voxel, kBand * voxel, kBand * voxel, progress);
     const auto fine = without_grains(grid.level(0, progress), voxel);
     if (!fine) continue;
-    auto surface = clean(*fine, measure.query, voxel, measure.tolerance_mm, max_edge_mm);
+    auto surface = clean(*fine, measure.query, voxel, measure.tolerance_mm, measure.max_edge_mm);
     if (!surface) continue;
     progress.check();
     if (auto result = measure.accepted(std::move(*surface))) return result;
@@ -167,12 +174,18 @@ Resampled resample(const Mesh& mesh, double tolerance_mm, const Progress& progre
   progress.report("re-sampling", 0);
   const TriangleSoup model = to_soup(mesh);
   const SurfaceQuery query(model);
-  const double size = bounding_box(mesh).diagonal().norm();
-  Measure measure{model, query, std::max(tolerance_mm, size / 100), tolerance_mm};
-  if (auto result = from_hull(mesh, kLongestEdge * size, measure, progress)) return std::move(*result);
-  if (auto result = from_grid(mesh, kLongestEdge * size, measure, progress)) return std::move(*result);
+  Measure measure(mesh, model, query, tolerance_mm);
+  if (auto result = from_hull(mesh, measure, progress)) return std::move(*result);
+  return resample_on_grid(mesh, tolerance_mm, progress);
+}
+
+Resampled resample_on_grid(const Mesh& mesh, double tolerance_mm, const Progress& progress) {
+  const TriangleSoup model = to_soup(mesh);
+  const SurfaceQuery query(model);
+  Measure measure(mesh, model, query, tolerance_mm);
+  if (auto result = from_grid(mesh, measure, progress)) return std::move(*result);
   throw Error(Fault::kBadInput,
-              "The surface intersects itself and could not be re-sampled within " +
+              "The surface cannot be used as it is and could not be re-sampled within " +
                   std::to_string(tolerance_mm) + " mm" +
                   (std::isfinite(measure.best_mm)
                        ? " (it deviates by " + std::to_string(measure.best_mm) + " mm)"

@@ -12,10 +12,10 @@ struct Resampled {
 };
 
 // A closed, manifold surface that does not intersect itself, around everything the model encloses
-// (its winding number is not zero). First the model's own triangles are cut where they cross and the
-// outer pieces kept, which changes next to nothing; where that fails a level of a distance grid is
-// taken, its points moved back to the model, and the grid made finer until the measured deviation is
-// at most tolerance_mm.
+// (its winding number is not zero). First the model's own triangles are cut where they cross and
+// the outer pieces kept, which changes next to nothing; where that fails a level of a distance grid
+// is taken, its points moved back to the model, and the grid made finer until the measured
+// deviation is at most tolerance_mm.
 //
 // The deviation is the largest distance found from the new surface to the model and from the
 // outside of the model to the new surface, at points spread over both no further apart than
@@ -24,5 +24,9 @@ struct Resampled {
 // mesh: closed, mm; it may intersect itself. tolerance_mm > 0.
 // Throws Error{kBadInput} when the tolerance is not reached with at most 60 million voxels.
 Resampled resample(const Mesh& mesh, double tolerance_mm, const Progress& progress);
+
+// The same by the distance grid alone: for surfaces that do not cross themselves and still cannot
+// be used, whose own triangles would not help.
+Resampled resample_on_grid(const Mesh& mesh, double tolerance_mm, const Progress& progress);
 
 }  // namespace packmerger

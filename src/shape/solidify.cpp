@@ -1,6 +1,7 @@
 #include "shape/solidify.h"
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,16 +20,16 @@ std::string two_digits(double number) {
   return text;
 }
 
-// Warnings about the shell are kept only when the shell is.
+// Empty when TetGen refuses. of_shell: the warnings about this attempt's shell.
 std::optional<Solidified> attempt(const Mesh& outer, const ShapeSettings& settings, bool hollow_it,
-                                  Warnings& warnings, const Progress& progress) {
-  Warnings of_shell;
+                                  Warnings& of_shell, const Progress& progress) {
+  of_shell.clear();
   Solidified solid;
-  solid.shell = hollow_it ? hollow(outer, settings, of_shell, progress) : solid_shell(outer, settings);
+  solid.shell =
+      hollow_it ? hollow(outer, settings, of_shell, progress) : solid_shell(outer, settings);
   auto tets = tetrahedralize(solid.shell, settings, progress);
   if (!tets) return std::nullopt;
   solid.tets = std::move(*tets);
-  warnings.insert(warnings.end(), of_shell.begin(), of_shell.end());
   return solid;
 }
 
@@ -36,23 +37,35 @@ std::optional<Solidified> attempt(const Mesh& outer, const ShapeSettings& settin
 
 Solidified solidify(const Mesh& model, const ShapeSettings& settings, bool hollow_it,
                     Warnings& warnings, const Progress& progress) {
+  const double tolerance = settings.resample_tolerance_mm;
   const bool crosses = self_intersects(model);
   progress.check();
+  Warnings of_shell;
+  const auto with_warnings = [&](Solidified solid) {
+    warnings.insert(warnings.end(), of_shell.begin(), of_shell.end());
+    return solid;
+  };
   if (!crosses)
-    if (auto solid = attempt(model, settings, hollow_it, warnings, progress)) return std::move(*solid);
+    if (auto solid = attempt(model, settings, hollow_it, of_shell, progress))
+      return with_warnings(std::move(*solid));
 
-  const Resampled resampled = resample(model, settings.resample_tolerance_mm, progress);
-  warnings.push_back(
-      {"resampled", std::string(crosses ? "The surface intersects itself"
-                                        : "No tetrahedra could be made inside the surface") +
-                        ", so it was re-sampled: it deviates from the model by at most " +
-                        two_digits(resampled.deviation_mm) + " mm"});
-  auto solid = attempt(resampled.surface, settings, hollow_it, warnings, progress);
-  if (!solid)
-    throw Error(Fault::kBadInput, "No tetrahedra can be made of the model, re-sampled or not",
-                "Repair the model in a mesh editor (remesh it with voxels) and try again.");
-  solid->resample_tolerance_mm = settings.resample_tolerance_mm;
-  return std::move(*solid);
+  // What crosses is first re-sampled the gentle way, by its own triangles.
+  for (const bool gently : {true, false}) {
+    if (gently && !crosses) continue;
+    const Resampled resampled = gently ? resample(model, tolerance, progress)
+                                       : resample_on_grid(model, tolerance, progress);
+    auto solid = attempt(resampled.surface, settings, hollow_it, of_shell, progress);
+    if (!solid) continue;
+    solid->resample_tolerance_mm = tolerance;
+    warnings.push_back(
+        {"resampled", std::string(crosses ? "The surface intersects itself"
+                                          : "No tetrahedra could be made inside the surface") +
+                          ", so it was re-sampled: it deviates from the model by at most " +
+                          two_digits(resampled.deviation_mm) + " mm"});
+    return with_warnings(std::move(*solid));
+  }
+  throw Error(Fault::kBadInput, "No tetrahedra can be made of the model, re-sampled or not",
+              "Repair the model in a mesh editor (remesh it with voxels) and try again.");
 }
 
 }  // namespace packmerger

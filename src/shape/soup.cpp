@@ -62,7 +62,8 @@ std::vector<int> representatives_near(const std::vector<Vec3>& points, double to
       home[axis] = std::llround(std::floor((points[i][axis] - origin[axis]) / tolerance));
     int found = -1;
     for (int n = 0; n < 27 && found < 0; ++n) {
-      const auto cell = cells.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
+      const auto cell =
+          cells.find({home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1});
       if (cell == cells.end()) continue;
       for (const int other : cell->second)
         if ((points[other] - points[i]).norm() <= tolerance) found = other;
@@ -172,7 +173,8 @@ std::vector<int> non_manifold_points(const TriangleSoup& soup) {
     }
   }
   for (const auto& [edge, triangle] : triangle_at)
-    if (!triangle_at.contains((edge << 32) | (edge >> 32))) bad[edge >> 32] = bad[edge & 0xffffffff] = 1;
+    if (!triangle_at.contains((edge << 32) | (edge >> 32)))
+      bad[edge >> 32] = bad[edge & 0xffffffff] = 1;
 
   for (std::size_t v = 0; v < soup.points.size(); ++v) {
     if (some_triangle[v] < 0 || bad[v] != 0) continue;
@@ -180,7 +182,8 @@ std::vector<int> non_manifold_points(const TriangleSoup& soup) {
     int triangle = some_triangle[v];
     do {
       const Triangle& t = soup.triangles[triangle];
-      const int at = static_cast<int>(std::find(t.begin(), t.end(), static_cast<int>(v)) - t.begin());
+      const int at =
+          static_cast<int>(std::find(t.begin(), t.end(), static_cast<int>(v)) - t.begin());
       triangle = triangle_at.at(pair_key(static_cast<int>(v), t[(at + 2) % 3]));
       ++fan;
     } while (triangle != some_triangle[v]);
@@ -216,7 +219,8 @@ Components components_of(const TriangleSoup& soup) {
   components.of_triangle.resize(soup.triangles.size());
   for (std::size_t i = 0; i < parent.size(); ++i) {
     const int r = root(static_cast<int>(i));
-    components.of_triangle[i] = r == static_cast<int>(i) ? components.count++ : components.of_triangle[r];
+    components.of_triangle[i] =
+        r == static_cast<int>(i) ? components.count++ : components.of_triangle[r];
   }
   return components;
 }
@@ -239,13 +243,25 @@ std::vector<TriangleSoup> split_components(const TriangleSoup& soup) {
   return parts;
 }
 
+void append(TriangleSoup& soup, const TriangleSoup& more) {
+  const int base = static_cast<int>(soup.points.size());
+  soup.points.insert(soup.points.end(), more.points.begin(), more.points.end());
+  for (const auto& [a, b, c] : more.triangles)
+    soup.triangles.push_back({a + base, b + base, c + base});
+}
+
+TriangleSoup turned(TriangleSoup soup) {
+  for (Triangle& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+  return soup;
+}
+
 double signed_volume_mm3(const TriangleSoup& soup) {
   if (soup.points.empty()) return 0;
   const Vec3 origin = soup.points[0];
   double six_volumes = 0;
   for (const auto& [a, b, c] : soup.triangles)
-    six_volumes += (soup.points[a] - origin)
-                       .dot((soup.points[b] - origin).cross(soup.points[c] - origin));
+    six_volumes +=
+        (soup.points[a] - origin).dot((soup.points[b] - origin).cross(soup.points[c] - origin));
   return six_volumes / 6;
 }
 

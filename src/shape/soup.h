@@ -42,6 +42,12 @@ Components components_of(const TriangleSoup& soup);
 // One soup a component, in order; points renumbered in order.
 std::vector<TriangleSoup> split_components(const TriangleSoup& soup);
 
+// Adds a copy of more to soup.
+void append(TriangleSoup& soup, const TriangleSoup& more);
+
+// With every triangle turned over.
+TriangleSoup turned(TriangleSoup soup);
+
 double signed_volume_mm3(const TriangleSoup& soup);
 double area_mm2(const TriangleSoup& soup);
 Box3 bounding_box(const TriangleSoup& soup);

@@ -22,8 +22,8 @@ Kernel::Point_3 to_cgal(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 Vec3 from_cgal(const Kernel::Point_3& p) { return {p.x(), p.y(), p.z()}; }
 
 // Directions that no modelled edge or face is likely to be parallel to.
-const std::array<Vec3, 3> kDirections = {Vec3(0.5127, 0.3041, 0.8029), Vec3(-0.2963, 0.8717, 0.3903),
-                                         Vec3(0.7211, -0.6519, -0.2347)};
+const std::array<Vec3, 3> kDirections = {
+    Vec3(0.5127, 0.3041, 0.8029), Vec3(-0.2963, 0.8717, 0.3903), Vec3(0.7211, -0.6519, -0.2347)};
 
 }  // namespace
 

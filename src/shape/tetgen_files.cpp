@@ -34,8 +34,7 @@ std::vector<T> take(std::string_view& bytes) {
   bytes.remove_prefix(sizeof count);
   if (count > bytes.size() / sizeof(T)) damaged();
   std::vector<T> items(count);
-  if (count > 0)
-    std::memcpy(static_cast<void*>(items.data()), bytes.data(), count * sizeof(T));
+  if (count > 0) std::memcpy(static_cast<void*>(items.data()), bytes.data(), count * sizeof(T));
   bytes.remove_prefix(count * sizeof(T));
   return items;
 }

@@ -18,7 +18,8 @@ namespace {
 REAL* new_numbers(const std::vector<Vec3>& points) {
   REAL* numbers = new REAL[3 * points.size()];
   for (std::size_t i = 0; i < points.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) numbers[3 * i + static_cast<std::size_t>(axis)] = points[i][axis];
+    for (int axis = 0; axis < 3; ++axis)
+      numbers[3 * i + static_cast<std::size_t>(axis)] = points[i][axis];
   return numbers;
 }
 
@@ -46,7 +47,8 @@ void fill(tetgenio& io, const TetgenInput& input) {
 TetgenOutput taken(const tetgenio& io) {
   TetgenOutput output;
   for (int i = 0; i < io.numberofpoints; ++i)
-    output.points.emplace_back(io.pointlist[3 * i], io.pointlist[3 * i + 1], io.pointlist[3 * i + 2]);
+    output.points.emplace_back(io.pointlist[3 * i], io.pointlist[3 * i + 1],
+                               io.pointlist[3 * i + 2]);
   for (int i = 0; i < io.numberoftetrahedra; ++i) {
     const int* corner = io.tetrahedronlist + static_cast<std::ptrdiff_t>(i) * io.numberofcorners;
     output.tetrahedra.push_back({corner[0], corner[1], corner[2], corner[3]});

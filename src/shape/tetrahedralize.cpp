@@ -37,17 +37,13 @@ double longest_surface_edge_mm(double max_tetrahedron_mm3) {
   return std::cbrt(max_tetrahedron_mm3 * 6 * std::sqrt(2.0));
 }
 
-TriangleSoup turned(TriangleSoup soup) {
-  for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-  return soup;
-}
-
 void add_facets(TetgenInput& input, TriangleSoup soup, int marker, double max_edge_mm) {
   std::vector<int> markers(soup.triangles.size(), marker);
   split_long_edges(soup, markers, max_edge_mm);
   const int base = static_cast<int>(input.points.size());
   input.points.insert(input.points.end(), soup.points.begin(), soup.points.end());
-  for (const auto& [a, b, c] : soup.triangles) input.facets.push_back({a + base, b + base, c + base});
+  for (const auto& [a, b, c] : soup.triangles)
+    input.facets.push_back({a + base, b + base, c + base});
   input.markers.insert(input.markers.end(), markers.begin(), markers.end());
 }
 
@@ -106,7 +102,8 @@ bool mark_sides(TetMesh& mesh, const TetgenOutput& output) {
       const auto marker = marker_of.find(sorted(face_corners(mesh, t, face)));
       if (marker == marker_of.end()) return false;
       if (marker->second != kOutsideMarker && marker->second != kCavityMarker) return false;
-      mesh.sides[t][face] = marker->second == kOutsideMarker ? FaceSide::kOutside : FaceSide::kCavity;
+      mesh.sides[t][face] =
+          marker->second == kOutsideMarker ? FaceSide::kOutside : FaceSide::kCavity;
     }
   return true;
 }
@@ -137,15 +134,16 @@ std::optional<TetMesh> tetrahedralize(const Shell& shell, const ShapeSettings& s
                                       const Progress& progress) {
   progress.report("making tetrahedra", 0);
   const double max_volume =
-      shell.volume_mm3 *
-      std::min(settings.max_tetrahedron_fraction, 1 / (kPerCluster * std::max(1, settings.clusters)));
+      shell.volume_mm3 * std::min(settings.max_tetrahedron_fraction,
+                                  1 / (kPerCluster * std::max(1, settings.clusters)));
   auto output = run_tetgen(input_for(shell, settings, max_volume), progress);
   if (!output) return std::nullopt;
   progress.report("making tetrahedra", 0.8);
   std::optional<TetMesh> mesh = mesh_of(std::move(*output));
   if (!mesh) return std::nullopt;
   const double volume = total_volume_mm3(*mesh);
-  if (std::abs(volume - shell.volume_mm3) > kVolumeTolerance * shell.volume_mm3) return std::nullopt;
+  if (std::abs(volume - shell.volume_mm3) > kVolumeTolerance * shell.volume_mm3)
+    return std::nullopt;
   split_large_tetrahedra(*mesh, max_volume);
   if (!all_positive(*mesh)) return std::nullopt;
   progress.report("making tetrahedra", 1);

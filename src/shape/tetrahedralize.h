@@ -11,11 +11,10 @@
 namespace packmerger {
 
 // Long edges of the outer surface are halved first (the surface stays where it is), TetGen is run
-// with settings.tetgen_flags (an "a" without a number is given the largest volume), and what is still
-// larger is split by bisection. The largest volume is settings.max_tetrahedron_fraction of the
-// shell's, or a hundredth of a cluster where that is less.
-// Every vertex of shell.outer is a point of the result at exactly the same position when the flags
-// hold Y.
+// with settings.tetgen_flags (an "a" without a number is given the largest volume), and what is
+// still larger is split by bisection. The largest volume is settings.max_tetrahedron_fraction of
+// the shell's, or a hundredth of a cluster where that is less. Every vertex of shell.outer is a
+// point of the result at exactly the same position when the flags hold Y.
 //
 // The result: positively oriented, neighbours linked, sides kOutside and kCavity from the facets'
 // markers, volume equal to the shell's within 0.1 %.

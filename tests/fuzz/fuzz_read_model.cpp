@@ -14,7 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data + 1), size - 1);
   try {
-    const ModelFile file = read_model_bytes(bytes, kExtensions[data[0] % kExtensions.size()], Progress());
+    const ModelFile file =
+        read_model_bytes(bytes, kExtensions[data[0] % kExtensions.size()], Progress());
     for (const auto& triangle : file.soup.triangles)
       for (const int corner : triangle)
         if (corner < 0 || corner >= static_cast<int>(file.soup.points.size())) std::abort();

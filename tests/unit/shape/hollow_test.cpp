@@ -104,10 +104,10 @@ TEST(Hollow, OwnCavityStaysWhereThereIsNoRoom) {
 
 TEST(Hollow, MatterInAnOwnCavityIsHollowedToo) {
   Warnings warnings;
-  const Shell shell = hollowed(
-      fixtures::together(fixtures::nested_cubes(60, 52),
-                         fixtures::box(Vec3::Constant(10), Vec3::Constant(50))),
-      warnings);
+  const Shell shell =
+      hollowed(fixtures::together(fixtures::nested_cubes(60, 52),
+                                  fixtures::box(Vec3::Constant(10), Vec3::Constant(50))),
+               warnings);
   expect_good_cavities(shell, 3);
   EXPECT_EQ(components_of(to_soup(shell.outer)).count, 3);
   ASSERT_EQ(shell.cavities.size(), 1u);

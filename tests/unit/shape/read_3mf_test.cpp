@@ -35,8 +35,9 @@ std::string cube_object(const std::string& attributes) {
 }
 
 TEST(Read3mf, UnitHoldsForVerticesAndTranslations) {
-  const TriangleSoup soup = read(three_mf("unit=\"inch\"", cube_object("id=\"1\""),
-                                          "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>"));
+  const TriangleSoup soup =
+      read(three_mf("unit=\"inch\"", cube_object("id=\"1\""),
+                    "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>"));
   const Box3 box = bounding_box(soup);
   EXPECT_NEAR(box.min().x(), 50.8, 1e-9);
   EXPECT_NEAR(box.max().x(), 76.2, 1e-9);
@@ -45,19 +46,20 @@ TEST(Read3mf, UnitHoldsForVerticesAndTranslations) {
 
 TEST(Read3mf, TransformsNestOverComponents) {
   // The component moves by 10 in x, then the item turns x to y: 3MF multiplies rows by matrices.
-  const std::string resources =
-      cube_object("id=\"1\"") +
-      "<object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>"
-      "</components></object>";
-  const Box3 box = bounding_box(
-      read(three_mf("", resources, "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"/>")));
+  const std::string resources = cube_object("id=\"1\"") +
+                                "<object id=\"2\"><components><component objectid=\"1\" "
+                                "transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>"
+                                "</components></object>";
+  const Box3 box = bounding_box(read(
+      three_mf("", resources, "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"/>")));
   EXPECT_TRUE(box.min().isApprox(Vec3(-1, 10, 5), 1e-9)) << box.min().transpose();
   EXPECT_TRUE(box.max().isApprox(Vec3(0, 11, 6), 1e-9)) << box.max().transpose();
 }
 
 TEST(Read3mf, MirroredObjectsStayOutward) {
-  const TriangleSoup soup = read(three_mf(
-      "", cube_object("id=\"1\""), "<item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>"));
+  const TriangleSoup soup =
+      read(three_mf("", cube_object("id=\"1\""),
+                    "<item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>"));
   EXPECT_NEAR(signed_volume_mm3(soup), 1, 1e-12);
 }
 
@@ -65,7 +67,8 @@ TEST(Read3mf, LeavesOutSupportAndWhatIsNotPrinted) {
   const std::string resources =
       cube_object("id=\"1\"") + cube_object("id=\"2\" type=\"support\"") + cube_object("id=\"3\"");
   const TriangleSoup soup = read(three_mf(
-      "", resources, "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\" printable=\"0\"/>"));
+      "", resources,
+      "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\" printable=\"0\"/>"));
   EXPECT_EQ(soup.triangles.size(), 12u);
 }
 
@@ -79,7 +82,8 @@ TEST(Read3mf, NamesThatLeaveTheArchiveAreNotThere) {
   const std::string relations =
       "<Relationships><Relationship Target=\"/../../../etc/passwd\" "
       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
-  EXPECT_THAT(refusal(written::zipped({{"_rels/.rels", relations}})), HasSubstr("no 3D model part"));
+  EXPECT_THAT(refusal(written::zipped({{"_rels/.rels", relations}})),
+              HasSubstr("no 3D model part"));
 }
 
 TEST(Read3mf, RefusesCyclesAndEndlessDoubling) {
@@ -99,7 +103,8 @@ TEST(Read3mf, RefusesCyclesAndEndlessDoubling) {
 
 TEST(Read3mf, RefusesDanglingAndDoubledIds) {
   refusal(three_mf("", cube_object("id=\"1\""), "<item objectid=\"7\"/>"));
-  refusal(three_mf("", cube_object("id=\"1\"") + cube_object("id=\"1\""), "<item objectid=\"1\"/>"));
+  refusal(
+      three_mf("", cube_object("id=\"1\"") + cube_object("id=\"1\""), "<item objectid=\"1\"/>"));
 }
 
 TEST(Read3mf, RefusesBadTransformsAndUnits) {
@@ -121,7 +126,8 @@ TEST(Read3mf, SaysWhichExtensionItDoesNotSupport) {
 
 TEST(Read3mf, StopsInflatingABomb) {
   const std::string bomb(std::size_t{64} << 20, ' ');
-  EXPECT_THAT(refusal(written::zipped({{"3D/3dmodel.model", bomb}})), HasSubstr("implausible size"));
+  EXPECT_THAT(refusal(written::zipped({{"3D/3dmodel.model", bomb}})),
+              HasSubstr("implausible size"));
 }
 
 }  // namespace

@@ -78,7 +78,8 @@ TEST(ReadModel, ContentGoesBeforeExtension) {
 TEST(ReadModel, BinaryStlMayBeginWithSolidAndCarryTrailingBytes) {
   const TriangleSoup model = fixtures::cube(10);
   EXPECT_EQ(read(written::binary_stl(model, "solid ascii"), "stl").soup.triangles.size(), 12u);
-  EXPECT_EQ(read(written::binary_stl(model, "made by") + "extra", "stl").soup.triangles.size(), 12u);
+  EXPECT_EQ(read(written::binary_stl(model, "made by") + "extra", "stl").soup.triangles.size(),
+            12u);
 }
 
 TEST(ReadModel, AsciiStlHoldsSeveralSolidsAndAnyLineEnd) {
@@ -103,8 +104,7 @@ TEST(ReadModel, ObjKnowsNegativeIndicesPolygonsAndContinuedLines) {
 
 TEST(ReadModel, ConcavePolygonsAreCutWithoutFolding) {
   // An L: a fan from its first corner would leave the polygon.
-  const std::string text =
-      "v 0 2 0\nv 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nf 4 5 6 1 2 3\n";
+  const std::string text = "v 0 2 0\nv 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nf 4 5 6 1 2 3\n";
   const TriangleSoup soup = read(text, "obj").soup;
   ASSERT_EQ(soup.triangles.size(), 4u);
   double area = 0;
@@ -129,8 +129,8 @@ TEST(ReadModel, RefusesWhatHoldsNoModel) {
 }
 
 TEST(ReadModel, RefusesNonFiniteAndEnormousCoordinates) {
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity(), 1e30}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e30}) {
     TriangleSoup model = fixtures::cube(10);
     model.points[3].y() = bad;
     for (const auto& [name, file] : all_files(model)) {
@@ -169,15 +169,17 @@ TEST(ReadModel, DoesNotBelieveHugeCounts) {
   expect_bad_input("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n9000000000000 0 1 2\n", "off");
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string head = std::string("ply\nformat ") + format + " 1.0\n";
-    expect_bad_input(head + "element vertex 9000000000000000000\nproperty float x\nend_header\n", "ply");
+    expect_bad_input(head + "element vertex 9000000000000000000\nproperty float x\nend_header\n",
+                     "ply");
     expect_bad_input(head + "element nothing 9000000000000000000\nend_header\n", "ply");
     expect_bad_input(head + "element face 1\nproperty list uint int vertex_indices\nend_header\n" +
                          "\xff\xff\xff\xff",
                      "ply");
   }
-  expect_bad_input("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float float x\nend_header\n"
-                   "1e300 1\n",
-                   "ply");
+  expect_bad_input(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty list float float x\nend_header\n"
+      "1e300 1\n",
+      "ply");
 }
 
 TEST(ReadModel, NamesTheFileThatIsMissing) {
@@ -227,10 +229,18 @@ TEST(ReadModel, SurvivesMutatedBytes) {
     for (int i = 0; i < changes; ++i) {
       const auto at = *rc::gen::inRange<std::size_t>(0, bytes.size());
       switch (*rc::gen::inRange(0, 4)) {
-        case 0: bytes[at] = *rc::gen::arbitrary<char>(); break;
-        case 1: bytes.erase(at, *rc::gen::inRange<std::size_t>(1, 40)); break;
-        case 2: bytes.insert(at, bytes.substr(at / 2, *rc::gen::inRange<std::size_t>(1, 40))); break;
-        case 3: bytes.insert(at, "99999999999"); break;
+        case 0:
+          bytes[at] = *rc::gen::arbitrary<char>();
+          break;
+        case 1:
+          bytes.erase(at, *rc::gen::inRange<std::size_t>(1, 40));
+          break;
+        case 2:
+          bytes.insert(at, bytes.substr(at / 2, *rc::gen::inRange<std::size_t>(1, 40)));
+          break;
+        case 3:
+          bytes.insert(at, "99999999999");
+          break;
       }
       if (bytes.empty()) return;
     }
@@ -243,8 +253,8 @@ TEST(ReadModel, SurvivesAnyBytes) {
     const std::string start = *rc::gen::element<std::string>(
         "", "ply\nformat ascii 1.0\n", "OFF\n", "solid x\nfacet\n", "PK\x03\x04", "v 1 2 3\nf ");
     const std::string bytes = start + *rc::gen::arbitrary<std::string>();
-    expect_model_or_refusal(
-        bytes, *rc::gen::element<std::string>("stl", "obj", "ply", "off", "3mf", ""));
+    expect_model_or_refusal(bytes,
+                            *rc::gen::element<std::string>("stl", "obj", "ply", "off", "3mf", ""));
   }));
 }
 

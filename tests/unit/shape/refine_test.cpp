@@ -25,8 +25,10 @@ TetMesh box_of_six(const Vec3& size) {
   TetMesh mesh;
   for (int i = 0; i < 8; ++i)
     mesh.points.emplace_back(i & 1 ? size.x() : 0, i & 2 ? size.y() : 0, i & 4 ? size.z() : 0);
-  mesh.tetrahedra = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
-  mesh.sides.assign(6, {FaceSide::kOutside, FaceSide::kOutside, FaceSide::kOutside, FaceSide::kOutside});
+  mesh.tetrahedra = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                     {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  mesh.sides.assign(
+      6, {FaceSide::kOutside, FaceSide::kOutside, FaceSide::kOutside, FaceSide::kOutside});
   link_neighbours(mesh);
   for (int t = 0; t < 6; ++t)  // the face at z = 0 plays the cavity
     for (int face = 0; face < 4; ++face) {
@@ -61,7 +63,8 @@ TEST(SplitLongEdges, KeepsShapePointsAndMarkers) {
   ASSERT_EQ(markers.size(), soup.triangles.size());
   for (std::size_t i = 0; i < markers.size(); ++i) {
     const auto& t = soup.triangles[i];
-    const bool at_bottom = std::all_of(t.begin(), t.end(), [&](int c) { return soup.points[c].z() == 0; });
+    const bool at_bottom =
+        std::all_of(t.begin(), t.end(), [&](int c) { return soup.points[c].z() == 0; });
     EXPECT_EQ(markers[i], at_bottom ? 2 : 1);
   }
 }

@@ -67,7 +67,8 @@ std::string refusal(const TriangleSoup& soup) {
 TEST(Repair, CleanInputPassesUnchanged) {
   for (const TriangleSoup& model :
        {fixtures::cube(10), fixtures::sphere(10, 3), fixtures::torus(20, 5, 24, 12),
-        fixtures::nested_cubes(20, 8), together(fixtures::cube(5), moved(fixtures::cube(5), {9, 0, 0}))}) {
+        fixtures::nested_cubes(20, 8),
+        together(fixtures::cube(5), moved(fixtures::cube(5), {9, 0, 0}))}) {
     const Repaired result = repaired(model);
     EXPECT_EQ(result.text, "");
     const TriangleSoup out = to_soup(result.mesh);
@@ -149,8 +150,10 @@ TEST(Repair, RemovesAWallBetweenTwoBodies) {
   TriangleSoup b = fixtures::box({10, 0, 0}, {20, 10, 10});
   // Its near wall is cut along the same diagonal.
   for (auto& triangle : b.triangles) {
-    if (triangle == std::array{0, 4, 2}) triangle = {0, 4, 6};
-    else if (triangle == std::array{2, 4, 6}) triangle = {0, 6, 2};
+    if (triangle == std::array{0, 4, 2})
+      triangle = {0, 4, 6};
+    else if (triangle == std::array{2, 4, 6})
+      triangle = {0, 6, 2};
   }
   const Repaired result = repaired(together(a, b));
   EXPECT_NEAR(volume_mm3(result.mesh), 2000, 1e-9);

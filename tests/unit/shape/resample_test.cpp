@@ -64,5 +64,35 @@ TEST(Resample, KeepsTheTrianglesThatDoNotCross) {
   EXPECT_LT(resampled.surface.n_faces(), 2 * model.triangles.size());
 }
 
+TEST(ResampleOnGrid, IsTheFallBack) {
+  TriangleSoup other = fixtures::cube(15);
+  for (Vec3& point : other.points) point += Vec3(7, 8, 9);
+  for (const TriangleSoup& model : {crossing_balls(), fixtures::together(fixtures::cube(15), other),
+                                    fixtures::nested_cubes(20, 10)}) {
+    const Resampled resampled = resample_on_grid(closed_mesh(model), 0.3, Progress());
+    expect_clean(resampled, 0.3);
+  }
+  EXPECT_NEAR(
+      volume_mm3(
+          resample_on_grid(closed_mesh(fixtures::nested_cubes(20, 10)), 0.3, Progress()).surface),
+      7000, 70);
+}
+
+TEST(ResampleOnGrid, RefusesAToleranceOutOfReach) {
+  EXPECT_THROW(resample_on_grid(closed_mesh(crossing_balls()), 1e-4, Progress()), Error);
+}
+
+TEST(ResampleOnGrid, SameBytesOnOneAndTwoThreads) {
+  const Mesh model = closed_mesh(crossing_balls());
+  const auto with_threads = [&](std::size_t threads) {
+    const ThreadLimit limit(threads);
+    return to_soup(resample_on_grid(model, 0.4, Progress()).surface);
+  };
+  const TriangleSoup one = with_threads(1);
+  const TriangleSoup two = with_threads(2);
+  EXPECT_EQ(one.points, two.points);
+  EXPECT_EQ(one.triangles, two.triangles);
+}
+
 }  // namespace
 }  // namespace packmerger

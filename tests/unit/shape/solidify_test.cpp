@@ -114,7 +114,8 @@ void expect_solid(const Made& made, int components = 1) {
     std::vector<Vec3> points = outside.points;
     std::sort(points.begin(), points.end(), less);
     for (const auto vertex : shell.outer.vertices())
-      EXPECT_TRUE(std::binary_search(points.begin(), points.end(), shell.outer.point(vertex), less));
+      EXPECT_TRUE(
+          std::binary_search(points.begin(), points.end(), shell.outer.point(vertex), less));
   }
   EXPECT_EQ(boundary(mesh, FaceSide::kCavity).triangles.empty(), shell.cavities.empty());
 }

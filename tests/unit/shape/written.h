@@ -36,7 +36,8 @@ inline std::string binary_stl(const TriangleSoup& soup, std::string header = "so
   return bytes;
 }
 
-inline std::string ascii_stl(const TriangleSoup& soup, const std::string& name, const char* end = "\n") {
+inline std::string ascii_stl(const TriangleSoup& soup, const std::string& name,
+                             const char* end = "\n") {
   std::ostringstream out;
   out.precision(17);
   out << "solid " << name << end;
@@ -66,7 +67,8 @@ inline std::string off(const TriangleSoup& soup) {
   out.precision(17);
   out << "OFF\n# a comment\n" << soup.points.size() << " " << soup.triangles.size() << " 0\n\n";
   for (const Vec3& point : soup.points) out << point.transpose() << "\n";
-  for (const auto& [a, b, c] : soup.triangles) out << "3 " << a << " " << b << " " << c << "  255 0 0\n";
+  for (const auto& [a, b, c] : soup.triangles)
+    out << "3 " << a << " " << b << " " << c << "  255 0 0\n";
   return out.str();
 }
 
@@ -139,12 +141,14 @@ inline std::string mesh_xml(const TriangleSoup& soup) {
 
 // attributes: of <model>; resources, build: their inner XML.
 inline std::string three_mf(const std::string& attributes, const std::string& resources,
-                            const std::string& build, const std::string& part = "3D/3dmodel.model") {
+                            const std::string& build,
+                            const std::string& part = "3D/3dmodel.model") {
   return zipped(
       {{"[Content_Types].xml", "<Types/>"},
        {"_rels/.rels",
         "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-        "<Relationship Id=\"r\" Target=\"/" + part +
+        "<Relationship Id=\"r\" Target=\"/" +
+            part +
             "\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
             "</Relationships>"},
        {part,
