@@ -20,8 +20,9 @@ int report(const Error& error) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Prepares a 3D model for one given printer: hollows it, divides it into parts, "
-                   "packs them on the tray, compares, and sends the job.");
+  CLI::App program(
+      "Prepares a 3D model for one given printer: hollows it, divides it into parts, "
+      "packs them on the tray, compares, and sends the job.");
   program.require_subcommand(1);
   program.set_version_flag("--version", "packmerger " PACKMERGER_VERSION);
   packmerger::cli::add_prepare(program);
@@ -41,8 +42,8 @@ int run(int argc, char** argv) {
   }
   std::cout.flush();
   if (!std::cout)
-    return report(Error(Fault::kIo, "Cannot write to standard output",
-                        "Check where the output is sent to."));
+    return report(
+        Error(Fault::kIo, "Cannot write to standard output", "Check where the output is sent to."));
   return 0;
 }
 

@@ -28,8 +28,7 @@ void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
   verb.add_option("--budget", arguments.budget_s, "seconds for the packing; 0: until it is done")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  verb.add_option("--set", arguments.settings, "key=value: any setting of the profile")
-      ->take_all();
+  verb.add_option("--set", arguments.settings, "key=value: any setting of the profile")->take_all();
 }
 
 PlanOptions plan_options(const PlanArguments& arguments) {
@@ -52,8 +51,6 @@ Profile chosen_profile(const std::string& id_or_path, const PlanArguments& argum
   return profile;
 }
 
-std::string title_of(const Profile& profile) {
-  return profile.name + " (" + profile.id + ")";
-}
+std::string title_of(const Profile& profile) { return profile.name + " (" + profile.id + ")"; }
 
 }  // namespace packmerger::cli

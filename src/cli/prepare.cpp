@@ -30,7 +30,8 @@ const std::map<std::string, Variant> kVariants{{"packed", Variant::kPacked},
 void tell(const Job& job, const std::string& out) {
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     const Vec3 size = bounding_box(job.models[i]).sizes();
-    fmt::print("{}: {:.1f} x {:.1f} x {:.1f} mm\n", job.inputs[i].file, size.x(), size.y(), size.z());
+    fmt::print("{}: {:.1f} x {:.1f} x {:.1f} mm\n", job.inputs[i].file, size.x(), size.y(),
+               size.z());
   }
   fmt::print("\n{}\n", comparison_table(job.estimates, title_of(job.profile)));
   fmt::print("Prepared: {}, {} part{}, {:.1f} mm high, in {}\n", job.variant, job.parts.size(),
@@ -44,7 +45,8 @@ void run(const Arguments& arguments) {
   Job job;
   {
     const Progress progress = terminal_progress();
-    job = prepare(profile, plan_options(arguments.plan), arguments.variant, arguments.out, progress);
+    job =
+        prepare(profile, plan_options(arguments.plan), arguments.variant, arguments.out, progress);
   }
   if (arguments.json)
     std::cout << json_text(job_json(job));
@@ -61,7 +63,8 @@ void add_prepare(CLI::App& program) {
   add_plan_options(*verb, arguments->plan);
   verb->add_option("--profile", arguments->profile, "a profile's id, or the path of a TOML file")
       ->required();
-  verb->add_option("--out", arguments->out, "the job folder to make; it must not exist")->required();
+  verb->add_option("--out", arguments->out, "the job folder to make; it must not exist")
+      ->required();
   verb->add_option("--variant", arguments->variant, "what is prepared to be printed")
       ->transform(CLI::CheckedTransformer(kVariants))
       ->default_str("packed");

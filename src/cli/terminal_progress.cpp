@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -58,9 +57,9 @@ Progress terminal_progress() {
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
   auto reporter = std::make_shared<Reporter>();
-  return Progress([reporter](std::string_view stage, double fraction) {
-    reporter->show(stage, fraction);
-  }, &interrupt_flag);
+  return Progress(
+      [reporter](std::string_view stage, double fraction) { reporter->show(stage, fraction); },
+      &interrupt_flag);
 }
 
 }  // namespace packmerger::cli

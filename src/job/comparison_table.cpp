@@ -32,11 +32,11 @@ std::string row(const std::string& name, const std::optional<Estimate>& way,
   };
   const Estimate none;
   const Estimate& other = yardstick == nullptr ? none : *yardstick;
-  return fmt::format("{:<20} {:>12} {:>7} {:>9.1f} g {:>9.1f} g {:>7} {:>9.2f} {} {:>7} {:>5} {:>5}\n",
-                     name, spoken_time(way->time_s), against(way->time_s, other.time_s),
-                     way->model_g, way->support_g, against(way->support_g, other.support_g),
-                     way->cost, way->currency, against(way->cost, other.cost), way->parts,
-                     way->trays);
+  return fmt::format(
+      "{:<20} {:>12} {:>7} {:>9.1f} g {:>9.1f} g {:>7} {:>9.2f} {} {:>7} {:>5} {:>5}\n", name,
+      spoken_time(way->time_s), against(way->time_s, other.time_s), way->model_g, way->support_g,
+      against(way->support_g, other.support_g), way->cost, way->currency,
+      against(way->cost, other.cost), way->parts, way->trays);
 }
 
 std::string source_of(const Comparison& comparison) {
@@ -76,15 +76,14 @@ std::string recommendation(const Comparison& comparison) {
     return unpacked == nullptr ? "It fits this printer in no way; try another profile."
                                : "It cannot be packed for this printer; print it in one piece.";
   const Estimate& packed = *comparison.packed;
-  if (unpacked == nullptr)
-    return "Pack it: in one piece it does not fit this printer.";
+  if (unpacked == nullptr) return "Pack it: in one piece it does not fit this printer.";
   const bool hollow = comparison.hollow && unpacked == &*comparison.hollow;
   const std::string other = hollow ? "hollow, in one piece" : "solid, in one piece";
   if (packed.cost < unpacked->cost)
-    return fmt::format("Pack it: {:.2f} {} less than printing it {} ({:+.0f} % time, {:+.0f} % cost).",
-                       unpacked->cost - packed.cost, packed.currency, other,
-                       100 * (packed.time_s / unpacked->time_s - 1),
-                       100 * (packed.cost / unpacked->cost - 1));
+    return fmt::format(
+        "Pack it: {:.2f} {} less than printing it {} ({:+.0f} % time, {:+.0f} % cost).",
+        unpacked->cost - packed.cost, packed.currency, other,
+        100 * (packed.time_s / unpacked->time_s - 1), 100 * (packed.cost / unpacked->cost - 1));
   return fmt::format(
       "Packing does not pay here: printing it {} costs {:.2f} {} less. Use --variant {}.", other,
       packed.cost - unpacked->cost, packed.currency, hollow ? "hollow" : "solid");

@@ -7,8 +7,9 @@
 
 namespace packmerger {
 
-// Plain text of fixed width, ending in a newline; title: the machine. Differences are against the cheapest way that
-// needs no dividing (as is, solid, hollow), since that is what one would print otherwise.
+// Plain text of fixed width, ending in a newline; title: the machine. Differences are against the
+// cheapest way that needs no dividing (as is, solid, hollow), since that is what one would print
+// otherwise.
 std::string comparison_table(const Comparison& comparison, const std::string& title);
 
 // Whether packing is worth it and what to do otherwise: one or two sentences.

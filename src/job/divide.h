@@ -16,10 +16,10 @@ namespace packmerger {
 
 struct Divided {
   Shell shell;
-  TetMesh tets;                  // empty when the model is kept whole
-  Segments segments;             // after pre-merging and smoothing
-  int clusters = 0;              // segments before pre-merging
-  double roughness_before = 0;   // radians: mean turning angle of the cut curves
+  TetMesh tets;                 // empty when the model is kept whole
+  Segments segments;            // after pre-merging and smoothing
+  int clusters = 0;             // segments before pre-merging
+  double roughness_before = 0;  // radians: mean turning angle of the cut curves
   double roughness_after = 0;
   std::optional<double> resample_tolerance_mm;
 };

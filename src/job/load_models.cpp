@@ -27,10 +27,11 @@ void warn_of_size(const std::string& name, const Mesh& surface, Warnings& warnin
   const Vec3 size = bounding_box(surface).sizes();
   const double longest = size.maxCoeff();
   if (longest >= kSmallest && longest <= kLargest) return;
-  warnings.push_back({"suspicious_size",
-                      fmt::format("{} measures {:.4g} x {:.4g} x {:.4g} mm: check its unit, and use "
-                                  "--units, --scale or --size if that is wrong",
-                                  name, size.x(), size.y(), size.z())});
+  warnings.push_back(
+      {"suspicious_size",
+       fmt::format("{} measures {:.4g} x {:.4g} x {:.4g} mm: check its unit, and use "
+                   "--units, --scale or --size if that is wrong",
+                   name, size.x(), size.y(), size.z())});
 }
 
 LoadedModel load_model(const std::filesystem::path& path, const Sizing& sizing, Warnings& warnings,

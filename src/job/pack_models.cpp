@@ -56,8 +56,9 @@ PackProblem problem_of(const Models& models, const Profile& profile, std::uint64
   return problem;
 }
 
-// The parts' surfaces after the packer's merges, and the glue between them. `placed` lists the parts
-// of one divided model as indices into packing.parts; results are written into parts by that index.
+// The parts' surfaces after the packer's merges, and the glue between them. `placed` lists the
+// parts of one divided model as indices into packing.parts; results are written into parts by that
+// index.
 void extract_parts(const Divided& model, int first_item, const std::vector<int>& placed,
                    const Packing& packing, std::vector<JobPart>& parts, const Progress& progress) {
   std::vector<std::vector<int>> groups;

@@ -79,8 +79,7 @@ std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const
 bool same_poses(const Arrangement& a, const Arrangement& b) {
   return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
                     [](const JobPart& one, const JobPart& other) {
-                      return one.tray == other.tray &&
-                             one.pose.matrix() == other.pose.matrix();
+                      return one.tray == other.tray && one.pose.matrix() == other.pose.matrix();
                     });
 }
 

@@ -18,7 +18,7 @@ namespace packmerger {
 struct PlanOptions {
   std::vector<std::filesystem::path> models;
   Sizing sizing;
-  bool split = true;   // false: pack the models as they are (the paper's Figure 13)
+  bool split = true;  // false: pack the models as they are (the paper's Figure 13)
   bool hollow = true;
   std::uint64_t seed = 1;
   double budget_s = 0;  // of the packing; 0: until it ends by itself

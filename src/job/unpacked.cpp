@@ -62,8 +62,7 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     sizes.push_back(boxes.back().sizes().head<2>());
   }
   const Room room = room_of(profile);
-  const std::vector<Slot> slots =
-      side_by_side(sizes, room.size_mm.head<2>(), profile.pack.gap_mm);
+  const std::vector<Slot> slots = side_by_side(sizes, room.size_mm.head<2>(), profile.pack.gap_mm);
   Arrangement arrangement;
   for (std::size_t m = 0; m < models.size(); ++m) {
     JobPart part;
@@ -130,8 +129,7 @@ std::vector<Slot> side_by_side(const std::vector<Vec2>& sizes, const Vec2& tray_
   std::vector<Vec2> extent(used_y.size(), Vec2::Zero());
   for (std::size_t i = 0; i < slots.size(); ++i)
     extent[slots[i].tray] = extent[slots[i].tray].cwiseMax(slots[i].corner + sizes[i]);
-  for (Slot& slot : slots)
-    slot.corner += ((tray_mm - extent[slot.tray]) / 2).cwiseMax(0);
+  for (Slot& slot : slots) slot.corner += ((tray_mm - extent[slot.tray]) / 2).cwiseMax(0);
   return slots;
 }
 

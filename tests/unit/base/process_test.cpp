@@ -60,9 +60,9 @@ TEST(Process, LongOutputIsDrainedAndBounded) {
 TEST(Process, TimeoutEndsGrandchildrenToo) {
   const TemporaryFolder folder;
   const std::string mark = (folder.path() / "alive").string();
-  const ProcessResult result = run_process(
-      shell("(trap '' TERM; sleep 6; touch " + mark + ") & trap '' TERM; sleep 60 & wait; sleep 60"),
-      0.3, Progress());
+  const ProcessResult result = run_process(shell("(trap '' TERM; sleep 6; touch " + mark +
+                                                 ") & trap '' TERM; sleep 60 & wait; sleep 60"),
+                                           0.3, Progress());
   EXPECT_TRUE(result.timed_out);
   std::this_thread::sleep_for(std::chrono::seconds(5));
   EXPECT_FALSE(fs::exists(mark)) << "a grandchild outlived its group";

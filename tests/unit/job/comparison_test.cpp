@@ -22,7 +22,8 @@ TEST(Recommendation, PacksWhenThatIsCheaper) {
   ways.hollow = costing(8);
   ways.packed = costing(6);
   EXPECT_EQ(cheapest(ways), Variant::kPacked);
-  EXPECT_NE(recommendation(ways).find("2.00 EUR less"), std::string::npos) << "against the best way";
+  EXPECT_NE(recommendation(ways).find("2.00 EUR less"), std::string::npos)
+      << "against the best way";
 }
 
 TEST(Recommendation, TellsTheTruthWhenPackingDoesNotPay) {

@@ -1,0 +1,106 @@
+// A workshop for tests of the foreman: its store, folders and printers, without any thread or
+// clock.
+#pragma once
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/files.h"
+#include "base/random.h"
+#include "daemon/api.h"
+#include "daemon/foreman.h"
+#include "daemon/worker.h"
+
+namespace packmerger {
+
+using nlohmann::json;
+
+inline PrinterConfig printer(const fs::path& folder, const std::string& name, Dialect dialect) {
+  PrinterConfig printer;
+  printer.name = name;
+  printer.profile = "marlin";
+  printer.abilities.dialect = dialect;
+  printer.folder = folder / "drop" / name;
+  printer.port = "/dev/null";
+  printer.handoff_folder = folder / "share";
+  fs::create_directories(printer.folder);
+  return printer;
+}
+
+// A workshop whose worker, clerk and printers are played by the test, one order after the other.
+class Workshop {
+ public:
+  Workshop() {
+    config_.state = folder_.path() / "state";
+    config_.prepare.program = "packmerger";
+    config_.retry_s = 10;
+    config_.printers = {printer(folder_.path(), "hand", Dialect::kHandoff),
+                        printer(folder_.path(), "real", Dialect::kGcode),
+                        printer(folder_.path(), "sim", Dialect::kGcode)};
+    config_.printers[2].simulated = true;
+    config_.printers[2].approve = Approve::kAuto;
+    config_.printers[1].approve = Approve::kAuto;
+    fs::create_directories(config_.state);
+    start();
+  }
+
+  // As after a kill: orders and events that were under way are gone.
+  void start() {
+    foreman_.reset();
+    store_ = std::make_unique<JobStore>(config_.state / "jobs.sqlite");
+    crew_ = std::make_unique<Crew>(config_);
+    foreman_ = std::make_unique<Foreman>(config_, *store_, *crew_, [](const std::string&) {});
+    foreman_->recover();
+    foreman_->advance(now_s_);
+  }
+
+  fs::path drop(const std::string& name, const std::string& model) {
+    const fs::path file = config_.printer(name)->folder / model;
+    std::ofstream(file) << "model " << drops_++;
+    EXPECT_TRUE(foreman_->arrived(*config_.printer(name), file));
+    foreman_->advance(now_s_);
+    return file;
+  }
+
+  void tell(const Event& event) {
+    foreman_->handle(event);
+    foreman_->advance(now_s_);
+  }
+
+  std::optional<PrepareOrder> prepare_order() { return crew_->worker.try_pop(); }
+  std::optional<SendOrder> send_order(const std::string& name) {
+    return crew_->senders.at(name).try_pop();
+  }
+
+  void prepare(const PrepareOrder& order, int trays = 1, bool pays = true) {
+    fs::create_directories(order.out);
+    std::ofstream(order.out / "job.json") << "{}";
+    tell(Prepared{order.job, trays, R"({"packed":{"fits":true,"cost":1}})", pays});
+  }
+
+  // The clerk's work, really done.
+  void run_the_clerk() {
+    Queue<ClerkOrder> orders;
+    Queue<Event> events;
+    while (auto order = crew_->clerk.try_pop()) orders.push(std::move(*order));
+    orders.close();
+    run_clerk(orders, events);
+    while (auto event = events.try_pop()) tell(*event);
+  }
+
+  JobRecord job(std::int64_t id) { return store_->find(id).value(); }
+  json ask(const json& request) { return json::parse(answer(*foreman_, request.dump())); }
+  json view(std::int64_t id) { return ask({{"verb", "jobs.show"}, {"id", id}}).at("result"); }
+
+  TemporaryFolder folder_;
+  DaemonConfig config_;
+  std::unique_ptr<JobStore> store_;
+  std::unique_ptr<Crew> crew_;
+  std::unique_ptr<Foreman> foreman_;
+  double now_s_ = 1000;
+  int drops_ = 0;
+};
+
+}  // namespace packmerger
