@@ -84,7 +84,8 @@ packmerger jobs show 1
 say "Approving the job and printing it"
 packmerger jobs approve 1
 wait_for done
-until grep -q "build_end" "$demo/printed.txt"; do kill -0 "$printer"; sleep 0.1; done
+# The record holds one action a line, in hex; 9a ends a build (docs/PROTOCOLS.md).
+until grep -q '^9a' "$demo/printed.txt"; do kill -0 "$printer"; sleep 0.1; done
 echo "The printer recorded the end of the build: $(wc -l < "$demo/printed.txt") commands."
 
 say "Where everything lies"
