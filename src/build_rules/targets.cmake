@@ -15,6 +15,10 @@ endif()
 if(PACKMERGER_SANITIZE)
   target_compile_options(packmerger_compile_options INTERFACE
     -fsanitize=${PACKMERGER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_compile_options(packmerger_compile_options INTERFACE
+      -fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignore.txt)
+  endif()
   target_link_options(packmerger_compile_options INTERFACE -fsanitize=${PACKMERGER_SANITIZE})
 endif()
 
