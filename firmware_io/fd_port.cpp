@@ -30,12 +30,6 @@ bool try_again(int error) { return error == EAGAIN || error == EWOULDBLOCK || er
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
-int Descriptor::release() { return std::exchange(fd_, -1); }
-
 // True when the descriptor is ready or in a state that the next read or write will tell.
 bool FdPort::wait(short events, double timeout_s) const {
   pollfd entry{fd_, events, 0};

@@ -3,26 +3,10 @@
 
 #include <string>
 
+#include "base/descriptor.h"
 #include "firmware_io/port.h"
 
 namespace packmerger {
-
-// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor();
-
-  int get() const { return fd_; }
-  int release();
-
- private:
-  int fd_;
-};
 
 // Reads and writes a configured, non-blocking terminal; does not close it.
 class FdPort : public Port {

@@ -158,7 +158,6 @@ SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
   const double room_mm = std::min(box.min().head<2>().minCoeff(), far_room.head<2>().minCoeff());
   const SlicerConfig config = slicer_config(profile, flavour, room_mm);
 
-  progress.report("slicing", 0);
   const TemporaryFolder folder;
   write_file_whole(folder.path() / "settings.ini", ini_text(config));
   write_file_whole(folder.path() / "tray.stl", stl_of(tray, machine_volume(profile).min()));
@@ -177,7 +176,6 @@ SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
   sliced.model_g = sliced.model_mm3 / 1000 * profile.material.model_density_g_cm3;
   sliced.support_mm3 = length.support_mm * section_mm2;
   sliced.support_g = sliced.support_mm3 / 1000 * profile.material.support_density_g_cm3;
-  progress.report("slicing", 1);
   return sliced;
 }
 

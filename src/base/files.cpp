@@ -13,27 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/error.h"
 
 namespace packmerger {
 namespace {
 
 std::string reason() { return std::strerror(errno); }
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
-
- private:
-  int fd_;
-};
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
   throw Error(Fault::kCannotWrite, "Cannot write " + path.string() + ": " + why,
@@ -72,9 +58,7 @@ class Sha256 {
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
     EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
   }
-  void add(const char* bytes, std::size_t count) {
-    EVP_DigestUpdate(context_.get(), bytes, count);
-  }
+  void add(const char* bytes, std::size_t count) { EVP_DigestUpdate(context_.get(), bytes, count); }
   std::string hex() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned length = 0;
@@ -104,9 +88,10 @@ std::string read_file(const fs::path& path, std::uint64_t max_bytes) {
   std::error_code ignored;
   const fs::file_status kind = fs::status(path, ignored);
   if (fs::exists(kind) && !fs::is_regular_file(kind))
-    throw Error(Fault::kNoInput,
-                path.string() + (fs::is_directory(kind) ? " is a folder" : " is not a regular file"),
-                "Name a file instead.");
+    throw Error(
+        Fault::kNoInput,
+        path.string() + (fs::is_directory(kind) ? " is a folder" : " is not a regular file"),
+        "Name a file instead.");
   const std::uint64_t size = fs::file_size(path, ignored);
   const auto refuse = [&] {
     throw Error(Fault::kBadInput,
@@ -143,6 +128,16 @@ void write_file_whole(const fs::path& path, std::string_view bytes) {
   if (::close(file.release()) != 0) fail();
   if (::rename(name.c_str(), path.c_str()) != 0) fail();
   sync_folder(folder);
+}
+
+int rename_keeping(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0 ? 0 : errno;
+  if (errno == EEXIST || errno == EXDEV || errno == ENOENT) return errno;
+  struct stat there {};
+  if (::lstat(to.c_str(), &there) == 0) return EEXIST;
+  return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
 void sync_folder(const fs::path& folder) { sync_path(folder, O_RDONLY | O_DIRECTORY); }
@@ -187,8 +182,8 @@ void TemporaryFolder::publish(const fs::path& target) {
   const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
   sync_tree(path_);
   ::chmod(path_.c_str(), 0755);
-  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, clean.c_str(), RENAME_NOREPLACE) != 0)
-    cannot_write(clean, reason());
+  const int why = rename_keeping(path_, clean);
+  if (why != 0) cannot_write(clean, std::strerror(why));
   path_.clear();
   sync_folder(clean.parent_path());
 }

@@ -20,6 +20,11 @@ std::string read_file(const fs::path& path, std::uint64_t max_bytes);
 // Afterwards path holds all the bytes, or what it held before.
 void write_file_whole(const fs::path& path, std::string_view bytes);
 
+// Renames a file or folder to `to`, which must not exist. Returns 0 or an errno (EEXIST, EXDEV, …).
+// Some network file systems know no renameat2 flags; there a hard link, or where even those are
+// missing a look before the rename, keeps what exists.
+int rename_keeping(const fs::path& from, const fs::path& to);
+
 // fsyncs every file below folder and the folders themselves.
 void sync_tree(const fs::path& folder);
 

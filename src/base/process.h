@@ -18,12 +18,12 @@
 namespace packmerger {
 
 struct ProcessSpec {
-  std::vector<std::string> argv;             // argv[0] is looked up in PATH unless it has a slash
+  std::vector<std::string> argv;               // argv[0] is looked up in PATH unless it has a slash
   std::map<std::string, std::string> set_env;  // added to or replacing the parent's
   std::vector<std::string> unset_env;
-  std::filesystem::path folder;              // working folder; empty: the parent's
-  std::uint64_t max_memory_bytes = 0;        // RLIMIT_AS; 0: no limit
-  int nice = 0;                              // added to the parent's
+  std::filesystem::path folder;        // working folder; empty: the parent's
+  std::uint64_t max_memory_bytes = 0;  // RLIMIT_AS; 0: no limit
+  int nice = 0;                        // added to the parent's
 };
 
 struct ExitStatus {

@@ -135,10 +135,10 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   if (printer.profile.empty()) refuse(file, line, table + " needs the key profile");
   try {
     printer.abilities = read_profile(printer.profile);
-    Profile trial = printer.abilities;
     for (std::size_t i = 0; i + 1 < printer.prepare_options.size(); ++i)
       if (printer.prepare_options[i] == "--set")
-        set_profile_key(trial, printer.prepare_options[i + 1]);
+        set_profile_key(printer.abilities, printer.prepare_options[i + 1]);
+    check_settings(printer.abilities);
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what());
   }

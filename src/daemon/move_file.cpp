@@ -11,26 +11,13 @@
 #include <cstring>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/error.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::size_t kMaxName = 255;  // bytes of a file's name on Linux
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 [[noreturn]] void cannot_move(const fs::path& from, const fs::path& to, int why) {
   const std::string what = printable(from.string()) + " cannot be moved to " +
@@ -39,18 +26,6 @@ class Descriptor {
   if (why == ENOENT) throw Error(Fault::kNoInput, what, "Drop the file again.");
   throw Error(Fault::kCannotWrite, what,
               "Give the daemon's user the right to write to both folders, and free space.");
-}
-
-// Some network file systems know no renameat2 flags; there a hard link, or where even those are
-// missing a look before the rename, keeps an existing file.
-int rename_keeping(const fs::path& from, const fs::path& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
-  if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0 ? 0 : errno;
-  if (errno == EEXIST || errno == EXDEV || errno == ENOENT) return errno;
-  struct stat there {};
-  if (::lstat(to.c_str(), &there) == 0) return EEXIST;
-  return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
 void make_folders(const fs::path& folder) {

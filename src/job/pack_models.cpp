@@ -39,6 +39,10 @@ PackProblem problem_of(const Models& models, const Profile& profile, std::uint64
       problem.items.push_back({std::move(segment.surface), segment.volume_mm3, m});
     for (const SegmentEdge& edge : adjacency(model.tets, model.segments))
       problem.edges.push_back({edge.a + first, edge.b + first, edge.area_mm2});
+    for (std::vector<int>& round_it : segments_round_cavities(model.tets, model.segments)) {
+      for (int& item : round_it) item += first;
+      problem.enclosures.push_back(std::move(round_it));
+    }
   }
   problem.build_mm = room_of(profile).size_mm;
   problem.gap_mm = profile.pack.gap_mm;

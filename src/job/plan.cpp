@@ -1,34 +1,20 @@
 #include "job/plan.h"
 
 #include <algorithm>
-#include <chrono>
+#include <atomic>
 #include <map>
 #include <memory>
 
+#include "base/parallel.h"
 #include "job/divide.h"
 #include "job/pack_models.h"
+#include "job/timings.h"
 #include "job/unpacked.h"
 #include "printers/estimate.h"
 #include "printers/slice.h"
 
 namespace packmerger {
 namespace {
-
-class Timings {
- public:
-  template <typename Work>
-  auto measure(const std::string& stage, const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    auto result = work();
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    stages_.emplace_back(stage, took.count());
-    return result;
-  }
-  const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
-
- private:
-  std::vector<std::pair<std::string, double>> stages_;
-};
 
 using DividedModels = std::vector<std::shared_ptr<const Divided>>;
 
@@ -94,19 +80,25 @@ void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
   }
 }
 
+// Each way is estimated by itself, several at once: a slicer works on one core most of its time.
 Comparison compare_ways(const Plan& plan, const std::optional<Arrangement>& as_is,
                         const Profile& profile, const Progress& progress) {
+  struct Way {
+    const std::optional<Arrangement>& way;
+    std::optional<Estimate>& estimate;
+  };
   Comparison comparison;
-  progress.report("estimating", 0.2);
-  comparison.solid = estimate_of(plan.solid, profile, progress);
-  progress.report("estimating", 0.4);
-  comparison.as_is = as_is && plan.solid && same_poses(*as_is, *plan.solid)
-                         ? comparison.solid
-                         : estimate_of(as_is, profile, progress);
-  progress.report("estimating", 0.6);
-  comparison.hollow = estimate_of(plan.hollow, profile, progress);
-  progress.report("estimating", 0.8);
-  comparison.packed = estimate_of(plan.packed, profile, progress);
+  const bool stands_best = as_is && plan.solid && same_poses(*as_is, *plan.solid);
+  std::vector<Way> ways{{plan.packed, comparison.packed},
+                        {plan.hollow, comparison.hollow},
+                        {plan.solid, comparison.solid}};
+  if (!stands_best) ways.push_back({as_is, comparison.as_is});
+  std::atomic<int> done{0};
+  parallel_for(ways.size(), [&](std::size_t i) {
+    ways[i].estimate = estimate_of(ways[i].way, profile, progress);
+    progress.report("estimating", 0.2 + 0.8 * ++done / static_cast<double>(ways.size()));
+  });
+  if (stands_best) comparison.as_is = comparison.solid;
   return comparison;
 }
 
@@ -144,19 +136,17 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   plan.job.profile = profile;
   plan.job.seed = options.seed;
   Warnings& warnings = plan.job.warnings;
-  Timings timings;
+  StageTimes& times = plan.job.timings_s;
 
-  const std::vector<LoadedModel> loaded = timings.measure(
-      "load", [&] { return load_models(options.models, options.sizing, warnings, progress); });
-  const DividedModels models = timings.measure(
-      "divide", [&] { return divide_all(loaded, profile, options, warnings, progress); });
+  const std::vector<LoadedModel> loaded = timed(times, "load", [&] {
+    return load_models(options.models, options.sizing, warnings, progress);
+  });
+  const DividedModels models = timed(
+      times, "divide", [&] { return divide_all(loaded, profile, options, warnings, progress); });
   record(plan.job, loaded, models);
 
-  timings.measure("pack", [&] {
-    pack_into(plan, models, profile, options, progress);
-    return 0;
-  });
-  plan.job.estimates = timings.measure("estimate", [&] {
+  timed(times, "pack", [&] { pack_into(plan, models, profile, options, progress); });
+  plan.job.estimates = timed(times, "estimate", [&] {
     progress.report("estimating", 0);
     plan.solid = stand_best(surfaces_of(loaded), profile, progress);
     plan.hollow = stand_best(shells_of(models), profile, progress);
@@ -164,7 +154,6 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   });
 
   drop_repeated(warnings);
-  plan.job.timings_s = timings.stages();
   return plan;
 }
 

@@ -1,11 +1,11 @@
 #include "job/prepare.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "job/timings.h"
 #include "printers/packing_cost.h"
 #include "printers/program.h"
 #include "tray/write_job_folder.h"
@@ -84,10 +84,8 @@ Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
   Job job = std::move(planned.job);
   job.variant = name_of(chosen);
   record(job, std::move(arrangement), trays);
-  const auto start = std::chrono::steady_clock::now();
-  const std::vector<TrayFiles> files = programs(job, trays, progress);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  job.timings_s.emplace_back("program", took.count());
+  const std::vector<TrayFiles> files =
+      timed(job.timings_s, "program", [&] { return programs(job, trays, progress); });
   write_job_folder(job, files, out, progress);
   return job;
 }

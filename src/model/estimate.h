@@ -10,12 +10,12 @@ enum class EstimateSource { kModel, kSlicer };
 
 struct Estimate {
   double time_s = 0;
-  double model_mm3 = 0;    // as deposited
+  double model_mm3 = 0;  // as deposited
   double model_g = 0;
   double support_mm3 = 0;  // V_s of docs/ESTIMATES, or what the slicer extrudes for support
   double support_g = 0;
-  double cost = 0;         // money: material, machine hours, minutes of gluing
-  std::string currency;    // ISO 4217
+  double cost = 0;       // money: material, machine hours, minutes of gluing
+  std::string currency;  // ISO 4217
   int parts = 1;
   int trays = 1;
   double assembly_min = 0;

@@ -27,10 +27,10 @@ struct JobNeighbour {
 };
 
 struct JobPart {
-  int id = 1;     // from 1; parts/NN.stl
-  int model = 0;  // index into inputs
-  int tray = 1;   // from 1
-  Mesh surface;   // model coordinates, mm
+  int id = 1;                    // from 1; parts/NN.stl
+  int model = 0;                 // index into inputs
+  int tray = 1;                  // from 1
+  Mesh surface;                  // model coordinates, mm
   Pose pose = Pose::Identity();  // model → tray
   double volume_mm3 = 0;
   std::vector<JobNeighbour> neighbours;
@@ -49,14 +49,14 @@ struct Job {
   int after_premerge = 0;
   int final_segments = 0;
 
-  double cost = 0;             // of the packing, by the profile's objective
-  double bbox_mm3 = 0;         // V_bp, summed over the trays
-  double support_mm3 = 0;      // V_s on the exact meshes, summed over the trays
-  double height_mm = 0;        // of the tallest tray
+  double cost = 0;         // of the packing, by the profile's objective
+  double bbox_mm3 = 0;     // V_bp, summed over the trays
+  double support_mm3 = 0;  // V_s on the exact meshes, summed over the trays
+  double height_mm = 0;    // of the tallest tray
 
-  std::vector<JobPart> parts;  // by id
-  std::vector<int> removal_order;                     // part ids, first taken out first
-  std::map<int, std::vector<Vec3>> removal_paths;     // only parts that are not lifted straight up
+  std::vector<JobPart> parts;                      // by id
+  std::vector<int> removal_order;                  // part ids, first taken out first
+  std::map<int, std::vector<Vec3>> removal_paths;  // only parts that are not lifted straight up
   std::optional<double> resample_tolerance_mm;
 
   Comparison estimates;

@@ -88,8 +88,7 @@ Box3 bounding_box(const Mesh& mesh) {
 
 Mesh transformed(const Mesh& mesh, const Pose& pose) {
   Mesh result = mesh;
-  for (const auto vertex : result.vertices())
-    result.set_point(vertex, pose * mesh.point(vertex));
+  for (const auto vertex : result.vertices()) result.set_point(vertex, pose * mesh.point(vertex));
   return result;
 }
 

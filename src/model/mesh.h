@@ -8,8 +8,10 @@
 #include "base/geometry.h"
 
 // EigenVectorT.hh specialises what the kernel declares, so it comes second.
+// clang-format off
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Geometry/EigenVectorT.hh>
+// clang-format on
 
 namespace packmerger {
 

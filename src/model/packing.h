@@ -36,33 +36,36 @@ struct PackItem {
 struct PackProblem {
   std::vector<PackItem> items;
   std::vector<SegmentEdge> edges;  // a, b index items; empty: nothing may be merged
-  Vec3 build_mm = Vec3::Zero();    // the tray, origin front left, z = 0 the plate
-  double gap_mm = 1;               // least Euclidean distance between two parts
-  double grid_mm = 1;              // cell of the height field in the answer
-  double rotation_step = 0;        // radians, about each of the three axes
-  double support_angle = 0;        // radians below the horizontal; 0: every down-facing facet
-  double search_grid_mm = 4;       // cell of the height field while orders are searched
-  double search_rotation_step = 0; // radians, while orders are searched
+  // Each the items round one cavity. Merging never makes a part that holds all of one: it would
+  // shut the cavity again, and nobody could take support out of it.
+  std::vector<std::vector<int>> enclosures;
+  Vec3 build_mm = Vec3::Zero();     // the tray, origin front left, z = 0 the plate
+  double gap_mm = 1;                // least Euclidean distance between two parts
+  double grid_mm = 1;               // cell of the height field in the answer
+  double rotation_step = 0;         // radians, about each of the three axes
+  double support_angle = 0;         // radians below the horizontal; 0: every down-facing facet
+  double search_grid_mm = 4;        // cell of the height field while orders are searched
+  double search_rotation_step = 0;  // radians, while orders are searched
   Cost cost;
-  int tabu_memory = 3;             // m: rounds a move stays forbidden
-  int tabu_patience = 10;          // rounds without a better order before the search ends
-  int tabu_samples = 8;            // swaps tried in one round
-  double budget_s = 0;             // 0: until the search ends by itself
+  int tabu_memory = 3;     // m: rounds a move stays forbidden
+  int tabu_patience = 10;  // rounds without a better order before the search ends
+  int tabu_samples = 8;    // swaps tried in one round
+  double budget_s = 0;     // 0: until the search ends by itself
   std::uint64_t seed = 1;
 };
 
 // A part is a set of items that are printed as one piece.
 struct PlacedPart {
-  std::vector<int> items;          // sorted indices into PackProblem::items
-  Pose pose = Pose::Identity();    // model → tray coordinates, mm
-  int tray = 0;                    // from 0
+  std::vector<int> items;        // sorted indices into PackProblem::items
+  Pose pose = Pose::Identity();  // model → tray coordinates, mm
+  int tray = 0;                  // from 0
 };
 
 struct Packing {
   std::vector<PlacedPart> parts;   // in the order they were placed: bottom first on each tray
-  std::vector<int> removal_order;  // indices into parts, first taken out first, each lifted straight up
+  std::vector<int> removal_order;  // indices into parts, first out first, each lifted straight up
   std::vector<TrayMeasure> trays;
-  double cost = 0;                 // sum over the trays of Cost::evaluate
+  double cost = 0;  // sum over the trays of Cost::evaluate
 };
 
 }  // namespace packmerger

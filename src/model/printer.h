@@ -15,26 +15,26 @@
 namespace packmerger {
 
 enum class Technology { kPolyjet, kFdm };
-enum class Dialect { kHandoff, kGcode, kS3g };          // what the printer is given
-enum class Objective { kPaper, kPrinter, kHeight };     // what the packer minimises
-enum class Segmentation { kPaper };             // how the shell is divided
-enum class Origin { kFrontLeft, kCenter };              // of the machine's own coordinates
-enum class FdmTime { kDeposition, kToolpath };          // which FDM estimator fits the machine
+enum class Dialect { kHandoff, kGcode, kS3g };       // what the printer is given
+enum class Objective { kPaper, kPrinter, kHeight };  // what the packer minimises
+enum class Segmentation { kPaper };                  // how the shell is divided
+enum class Origin { kFrontLeft, kCenter };           // of the machine's own coordinates
+enum class FdmTime { kDeposition, kToolpath };       // which FDM estimator fits the machine
 enum class HandoffDocument { kTrayStl, kTray3mf };
 
 // The geometry of a job: sections 3 to 6 of the paper.
 struct ShapeSettings {
   double wall_mm = 3;
-  double voxel_mm = 1;                    // of the distance grid
-  double min_cavity_mm3 = 500;            // smaller cavities stay solid
-  double resample_tolerance_mm = 0.3;     // furthest a re-sampled surface may lie from the model
-  std::string tetgen_flags = "pYq1.6a";   // documented in docs/PROFILES
-  double max_tetrahedron_fraction = 5e-4; // of V_o in one tetrahedron
-  int clusters = 100;                     // seeds are grown to 1/clusters of V_o
+  double voxel_mm = 1;                     // of the distance grid
+  double min_cavity_mm3 = 500;             // smaller cavities stay solid
+  double resample_tolerance_mm = 0.3;      // furthest a re-sampled surface may lie from the model
+  std::string tetgen_flags = "pYq1.6a";    // documented in docs/PROFILES
+  double max_tetrahedron_fraction = 5e-4;  // of V_o in one tetrahedron
+  int clusters = 100;                      // seeds are grown to 1/clusters of V_o
   int cluster_rounds = 50;
   double cluster_epsilon_mm = 1e-3;
   double min_glue_area_mm2 = 10;
-  double min_volume_fraction = 0.05;      // of V_o
+  double min_volume_fraction = 0.05;  // of V_o
   int smooth_rounds = 10;
   Segmentation segmentation = Segmentation::kPaper;
 };
@@ -44,7 +44,7 @@ struct PackSettings {
   double grid_mm = 1;
   double rotation_step_deg = 30;
   Objective objective = Objective::kPaper;
-  double weight = 0.75;                   // w of equation (1)
+  double weight = 0.75;  // w of equation (1)
   int tabu_memory = 3;
   int tabu_patience = 10;
   int tabu_samples = 8;
@@ -59,15 +59,15 @@ struct PolyjetSettings {
   double swath_s = 0;
   double swath_mm = 50.8;
   double per_mm_x_s = 0;
-  double support_g_per_cm3 = 0;           // effective: coat, pedestal and purge included
-  double model_waste_factor = 1;          // deposited mass over the model's mass
+  double support_g_per_cm3 = 0;   // effective: coat, pedestal and purge included
+  double model_waste_factor = 1;  // deposited mass over the model's mass
 };
 
 struct FdmSettings {
   FdmTime time = FdmTime::kToolpath;
   double start_s = 0;
   // kDeposition
-  double deposition_cm3_h = 0;            // model and support
+  double deposition_cm3_h = 0;  // model and support
   double layer_s = 0;
   // kToolpath
   double line_width_mm = 0.45;
@@ -81,11 +81,11 @@ struct FdmSettings {
   double min_layer_s = 12;
   double min_speed_mm_s = 24;
   double support_spacing_mm = 2.5;
-  double overhead_factor = 0.22;          // k
-  double support_time_factor = 4.1;       // c_s
-  double interface_s_per_mm2 = 0.8;       // c_i, per layer-mm² of interface
-  double support_fill_fraction = 1;       // of V_s that is really deposited
-  double level_support_fraction = 1;      // of that, below level facets, where slicers bridge
+  double overhead_factor = 0.22;      // k
+  double support_time_factor = 4.1;   // c_s
+  double interface_s_per_mm2 = 0.8;   // c_i, per layer-mm² of interface
+  double support_fill_fraction = 1;   // of V_s that is really deposited
+  double level_support_fraction = 1;  // of that, below level facets, where slicers bridge
 };
 
 struct MaterialSettings {
@@ -101,8 +101,8 @@ struct CostSettings {
   double support_price_per_g = 0;
   double machine_price_per_h = 0;
   double labour_price_per_h = 0;
-  double glue_min_per_joint = 0;          // minutes of gluing for one pair of neighbours
-  double clean_min_per_tray = 0;          // minutes of clearing and cleaning for one tray
+  double glue_min_per_joint = 0;  // minutes of gluing for one pair of neighbours
+  double clean_min_per_tray = 0;  // minutes of clearing and cleaning for one tray
 };
 
 // How a Program is made (dialects gcode and s3g).
@@ -110,28 +110,28 @@ struct SlicerSettings {
   std::map<std::string, std::string> options;  // PrusaSlicer's own names and values
   std::string start_gcode;
   std::string end_gcode;
-  std::string gpx_machine;                // gpx -m; dialect s3g
+  std::string gpx_machine;  // gpx -m; dialect s3g
 };
 
 // How it is sent (dialects gcode and s3g).
 struct LinkSettings {
   int baud = 115200;
-  double timeout_s = 30;                  // silence after which the printer counts as gone
-  double boot_wait_s = 2;                 // after opening, for boards that reset
-  std::vector<std::string> usb_ids;       // "vvvv:pppp", lower-case hex
-  std::string safe_gcode;                 // sent after a failure or a cancel: heaters off
+  double timeout_s = 30;             // silence after which the printer counts as gone
+  double boot_wait_s = 2;            // after opening, for boards that reset
+  std::vector<std::string> usb_ids;  // "vvvv:pppp", lower-case hex
+  std::string safe_gcode;            // sent after a failure or a cancel: heaters off
 };
 
 struct Profile {
-  std::string id;                         // the file's name without .toml
+  std::string id;  // the file's name without .toml
   std::string name;
   Technology technology = Technology::kFdm;
   Dialect dialect = Dialect::kHandoff;
   HandoffDocument document = HandoffDocument::kTrayStl;
-  std::array<double, 3> build_mm{};       // x, y, z of the volume that may be printed in
+  std::array<double, 3> build_mm{};  // x, y, z of the volume that may be printed in
   Origin origin = Origin::kFrontLeft;
   double layer_mm = 0;
-  double support_angle_deg = 0;           // 0..90 below the horizontal
+  double support_angle_deg = 0;  // 0..90 below the horizontal
   ShapeSettings shape;
   PackSettings pack;
   PolyjetSettings polyjet;
@@ -146,7 +146,8 @@ struct Profile {
 
 // The folders profiles are looked for in, best first: $PACKMERGER_PROFILES,
 // $XDG_CONFIG_HOME/packmerger/profiles, /etc/packmerger/profiles,
-// /usr/share/packmerger/profiles, and the source tree's profiles/ for a build that is not installed.
+// /usr/share/packmerger/profiles, and the source tree's profiles/ for a build that is not
+// installed.
 std::vector<std::filesystem::path> profile_folders();
 
 // id_or_path: a profile's id, or the path of a .toml file (it contains a slash or ends in .toml).
@@ -169,11 +170,12 @@ std::string profile_toml(const Profile& profile);
 
 // One key as docs/PROFILES shows it.
 struct ProfileKey {
-  std::string name;     // "gap_mm", "polyjet.swath_s"
-  std::string type;     // "number", "integer", "text", "one of …", "3 numbers", "table of texts", "texts"
-  std::string unit;     // may be empty
-  std::string range;    // may be empty
-  std::string meaning;  // one sentence
+  std::string name;  // "gap_mm", "polyjet.swath_s"
+  std::string
+      type;  // "number", "integer", "text", "one of …", "3 numbers", "table of texts", "texts"
+  std::string unit;           // may be empty
+  std::string range;          // may be empty
+  std::string meaning;        // one sentence
   std::string default_value;  // as TOML; "required" where a profile must say it
 };
 std::vector<ProfileKey> profile_keys();

@@ -14,7 +14,7 @@ struct Segments {
 
 // An edge e_ij of the paper's weighted adjacency graph G(V, E): two segments that share faces.
 struct SegmentEdge {
-  int a = 0;            // a < b
+  int a = 0;  // a < b
   int b = 0;
   double area_mm2 = 0;  // a_ij: the cross-section, the area of the shared faces
 };

@@ -16,12 +16,13 @@ enum class FaceSide : signed char {
 };
 
 // Face i of a tetrahedron is the one opposite its corner i. Tetrahedra are positively oriented:
-// (b-a) × (c-a) · (d-a) > 0. Every face is shared by exactly two tetrahedra or lies on the boundary.
+// (b-a) × (c-a) · (d-a) > 0. Every face is shared by exactly two tetrahedra or lies on the
+// boundary.
 struct TetMesh {
-  std::vector<Vec3> points;                      // mm, model coordinates
-  std::vector<std::array<int, 4>> tetrahedra;    // indices into points
-  std::vector<std::array<int, 4>> neighbours;    // across face i; -1 on the boundary
-  std::vector<std::array<FaceSide, 4>> sides;    // of face i
+  std::vector<Vec3> points;                    // mm, model coordinates
+  std::vector<std::array<int, 4>> tetrahedra;  // indices into points
+  std::vector<std::array<int, 4>> neighbours;  // across face i; -1 on the boundary
+  std::vector<std::array<FaceSide, 4>> sides;  // of face i
 
   int count() const { return static_cast<int>(tetrahedra.size()); }
   double volume_mm3(int tetrahedron) const;

@@ -19,6 +19,11 @@ std::vector<std::pair<int, int>> mergeable_pairs(const std::vector<ItemSet>& par
     if (problem.items[a].model != problem.items[b].model) continue;
     if (part_of[a] != part_of[b]) pairs.insert(std::minmax(part_of[a], part_of[b]));
   }
+  for (const std::vector<int>& enclosure : problem.enclosures) {
+    std::set<int> round_it;
+    for (const int item : enclosure) round_it.insert(part_of[static_cast<std::size_t>(item)]);
+    if (round_it.size() == 2) pairs.erase({*round_it.begin(), *round_it.rbegin()});
+  }
   return {pairs.begin(), pairs.end()};
 }
 

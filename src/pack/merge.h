@@ -11,7 +11,8 @@ namespace packmerger {
 
 using ItemSet = std::vector<int>;  // sorted
 
-// Pairs of parts (a < b) that share an edge of the graph and come from the same model, sorted.
+// Pairs of parts (a < b) that share an edge of the graph, come from the same model and together
+// shut no cavity; sorted.
 std::vector<std::pair<int, int>> mergeable_pairs(const std::vector<ItemSet>& parts,
                                                  const PackProblem& problem);
 

@@ -12,6 +12,10 @@ namespace packmerger {
 // Every pair of segments that shares faces, with their area; sorted by (a, b), a < b.
 std::vector<SegmentEdge> adjacency(const TetMesh& mesh, const Segments& segments);
 
+// For each hollowed cavity the segments that it touches, sorted.
+std::vector<std::vector<int>> segments_round_cavities(const TetMesh& mesh,
+                                                      const Segments& segments);
+
 // By label, mm³.
 std::vector<double> segment_volumes(const TetMesh& mesh, const Segments& segments);
 

@@ -1,27 +1,20 @@
 #include "base/files.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
 
 #include "base/error.h"
+#include "fixtures/fault_of.h"
 
 namespace packmerger {
 namespace {
 
-template <typename Work>
-Fault fault_of(const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.hint().empty());
-    return error.fault();
-  }
-  ADD_FAILURE() << "no error";
-  return Fault::kInternal;
-}
+using fixtures::fault_of;
 
 std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
@@ -43,6 +36,24 @@ TEST(Files, ReplacingKeepsTheOldOnFailure) {
             Fault::kCannotWrite);
   EXPECT_TRUE(fs::is_directory(folder.path() / "taken"));
   EXPECT_EQ(entries(folder.path()), 1u) << "no temporary file is left";
+}
+
+// A limit on a file's size stands in for the full disk: write() fails half-way in both.
+TEST(Files, AFullDiskLeavesTheOldFileAndNothingElse) {
+  const TemporaryFolder folder;
+  write_file_whole(folder.path() / "job", "old");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1 << 20, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string bytes(std::size_t{3} << 20, 'x');
+  EXPECT_EQ(fault_of([&] { write_file_whole(folder.path() / "job", bytes); }), Fault::kCannotWrite);
+  EXPECT_EQ(fault_of([&] { write_file_whole(folder.path() / "new", bytes); }), Fault::kCannotWrite);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_EQ(read_file(folder.path() / "job", 10), "old");
+  EXPECT_EQ(entries(folder.path()), 1u) << "no half-written file is left";
 }
 
 TEST(Files, RefusesWhatIsTooLargeMissingOrAFolder) {

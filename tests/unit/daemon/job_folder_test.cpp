@@ -6,9 +6,12 @@
 
 #include "base/error.h"
 #include "daemon/send.h"
+#include "fixtures/fault_of.h"
 
 namespace packmerger {
 namespace {
+
+using fixtures::fault_of;
 
 void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
@@ -16,17 +19,6 @@ const char* const kReport = R"({"version": 1,
   "inputs": [{"file": "bunny.stl", "sha256": "ab", "scale": 1}],
   "parts": [{"id": 1, "tray": 1}, {"id": 2, "tray": 2}],
   "estimates": {"packed": {"fits": true, "cost": 1.5}}})";
-
-Fault fault_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.hint().empty());
-    return error.fault();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return Fault::kInternal;
-}
 
 // A job folder of two trays for the given profile.
 void make_job(const fs::path& folder, const std::string& profile) {

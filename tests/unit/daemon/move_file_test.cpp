@@ -7,22 +7,14 @@
 
 #include "base/error.h"
 #include "daemon/find_port.h"
+#include "fixtures/fault_of.h"
 
 namespace packmerger {
 namespace {
 
-void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+using fixtures::fault_of;
 
-Fault fault_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.hint().empty());
-    return error.fault();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return Fault::kInternal;
-}
+void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
 // A folder on another file system than the temporary one; empty where there is none.
 fs::path other_file_system(const TemporaryFolder& folder) {

@@ -13,9 +13,12 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "fixtures/fault_of.h"
 
 namespace packmerger {
 namespace {
+
+using fixtures::fault_of;
 
 const std::vector<JobState> kStates = {
     JobState::kClaiming, JobState::kReceived, JobState::kPreparing, JobState::kReady,
@@ -30,17 +33,6 @@ JobRecord sample(JobState state = JobState::kClaiming) {
   job.state = state;
   job.received_s = 1e9;
   return job;
-}
-
-Fault fault_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_FALSE(error.hint().empty());
-    return error.fault();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return Fault::kInternal;
 }
 
 TEST(JobState, NamesAreUniqueAndReadBack) {

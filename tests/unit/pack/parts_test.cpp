@@ -273,5 +273,19 @@ TEST(Merge, PairsFollowTheGraphAndStayWithinAModel) {
   EXPECT_EQ(merged({0, 4}, {1, 9}), (ItemSet{0, 1, 4, 9}));
 }
 
+TEST(Merge, NoPairShutsACavity) {
+  PackProblem problem = shapes::problem_of({shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1)),
+                                            shapes::box(Vec3(1, 1, 1)), shapes::box(Vec3(1, 1, 1))},
+                                           Vec3(10, 10, 10));
+  for (PackItem& item : problem.items) item.model = 0;
+  problem.edges = {{0, 1, 1}, {0, 2, 1}, {1, 2, 1}, {2, 3, 1}};
+  problem.enclosures = {{0, 1, 2}, {3}};  // nothing can open a cavity inside one item
+  using Pairs = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(mergeable_pairs({{0}, {1}, {2}, {3}}, problem),
+            (Pairs{{0, 1}, {0, 2}, {1, 2}, {2, 3}}));
+  EXPECT_EQ(mergeable_pairs({{0, 1}, {2}, {3}}, problem), (Pairs{{1, 2}}));
+  EXPECT_EQ(mergeable_pairs({{0, 1}, {2, 3}}, problem), Pairs{});
+}
+
 }  // namespace
 }  // namespace packmerger

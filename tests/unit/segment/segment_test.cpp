@@ -228,6 +228,24 @@ TEST(Adjacency, MeasuresTheSharedFaces) {
   EXPECT_NEAR(length, 2 * (10 + 15), 1e-9);
 }
 
+TEST(Adjacency, FindsTheSegmentsRoundEachCavity) {
+  // two cavities of one cell in a row of seven cells, walls one cell thick
+  const auto hole = [](const fixtures::Cell& c) {
+    return c[1] == 1 && c[2] == 1 && (c[0] == 1 || c[0] == 5);
+  };
+  const TetMesh mesh = fixtures::grid_mesh(
+      {7, 3, 3}, 10, [&](const fixtures::Cell& c) { return !hole(c); }, hole);
+  Segments segments{{}, 3};
+  for (int t = 0; t < mesh.count(); ++t) {
+    const double x = mesh.centroid(t).x();
+    segments.of_tetrahedron.push_back(x < 15 ? 0 : x < 40 ? 1 : 2);
+  }
+  EXPECT_EQ(segments_round_cavities(mesh, segments), (std::vector<std::vector<int>>{{0, 1}, {2}}));
+  EXPECT_TRUE(
+      segments_round_cavities(fixtures::solid_box({2, 2, 2}, 5), {std::vector<int>(48, 0), 1})
+          .empty());
+}
+
 TEST(United, RefusesGroupsThatMissOrRepeatALabel) {
   const Segments segments{{0, 1, 2}, 3};
   EXPECT_EQ(united(segments, {{2}, {0, 1}}).of_tetrahedron, (std::vector<int>{1, 1, 0}));

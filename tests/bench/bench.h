@@ -1,0 +1,11 @@
+// One function a verb of packmerger-bench; each adds it to the program.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace packmerger::bench {
+
+// How much smoothing straightens the cuts of a model, as figures and as a picture.
+void add_cuts(CLI::App& program);
+
+}  // namespace packmerger::bench

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "base/files.h"
+#include "bench/bench.h"
+#include "job/arrangement.h"
+#include "job/load_models.h"
+#include "model/printer.h"
+#include "picture/preview.h"
+#include "shape/premerge.h"
+#include "shape/segment.h"
+#include "shape/smooth_cuts.h"
+#include "shape/solidify.h"
+
+namespace packmerger::bench {
+namespace {
+
+struct Arguments {
+  std::string model;
+  std::string profile = "objet30";
+  double size_mm = 100;
+  bool y_up = false;
+  std::string out;
+};
+
+// The model's outside with the segment that each of its faces belongs to.
+ColouredMesh outside_of(const TetMesh& mesh, const Segments& segments, bool y_up) {
+  TriangleSoup soup;
+  ColouredMesh coloured;
+  std::map<int, int> index_of;
+  for (int t = 0; t < mesh.count(); ++t)
+    for (int face = 0; face < 4; ++face) {
+      if (mesh.sides[t][face] != FaceSide::kOutside) continue;
+      std::array<int, 3> triangle = face_corners(mesh, t, face);
+      for (int& corner : triangle) {
+        const auto [entry, is_new] =
+            index_of.try_emplace(corner, static_cast<int>(soup.points.size()));
+        if (is_new) {
+          const Vec3& point = mesh.points[corner];
+          soup.points.push_back(y_up ? Vec3(point.x(), -point.z(), point.y()) : point);
+        }
+        corner = entry->second;
+      }
+      soup.triangles.push_back(triangle);
+      coloured.segment_of_face.push_back(segments.of_tetrahedron[t]);
+    }
+  coloured.surface = closed_mesh(soup);
+  return coloured;
+}
+
+void run(const Arguments& arguments) {
+  const Profile profile = read_profile(arguments.profile);
+  const Progress silent;
+  Warnings warnings;
+  Sizing sizing;
+  sizing.size_mm = arguments.size_mm;
+  const auto loaded = load_models({arguments.model}, sizing, warnings, silent);
+  TetMesh tets = solidify(*loaded.front().surface, profile.shape, true, warnings, silent).tets;
+  const BuildVolume build{room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
+  Segments segments = premerge(tets, segment(tets, profile.shape, 1, silent), profile.shape, build,
+                               warnings, silent);
+  const ColouredMesh before = outside_of(tets, segments, arguments.y_up);
+  const CutRoughness roughness = smooth_cuts(tets, segments, profile.shape, silent);
+  fmt::print(
+      "{} at {:g} mm, {} segments: mean turning angle of the cuts {:.2f} rad before, "
+      "{:.2f} rad after smoothing ({:+.0f} %)\n",
+      loaded.front().input.file, arguments.size_mm, segments.count, roughness.before_rad,
+      roughness.after_rad, 100 * (roughness.after_rad / roughness.before_rad - 1));
+  if (arguments.out.empty()) return;
+  write_file_whole(arguments.out,
+                   png_bytes(cut_picture(before, outside_of(tets, segments, arguments.y_up))));
+}
+
+}  // namespace
+
+void add_cuts(CLI::App& program) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = program.add_subcommand("cuts", "cuts before and after smoothing");
+  verb->add_option("MODEL", arguments->model)->required();
+  verb->add_option("--profile", arguments->profile)->capture_default_str();
+  verb->add_option("--size", arguments->size_mm, "longest side, mm")->capture_default_str();
+  verb->add_flag("--y-up", arguments->y_up, "the file's y axis points up");
+  verb->add_option("--out", arguments->out, "a PNG: before on the left, after on the right");
+  verb->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace packmerger::bench

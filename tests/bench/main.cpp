@@ -1,0 +1,19 @@
+#include <iostream>
+
+#include "base/error.h"
+#include "bench/bench.h"
+
+int main(int argc, char** argv) {
+  CLI::App program("What the docs say was measured, measured again");
+  program.require_subcommand(1);
+  packmerger::bench::add_cuts(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error);
+  } catch (const packmerger::Error& error) {
+    std::cerr << error.what() << '\n' << error.hint() << '\n';
+    return error.exit_code();
+  }
+  return 0;
+}
