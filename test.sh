@@ -13,7 +13,7 @@ export PACKMERGER_MODELS=${PACKMERGER_MODELS:-$(pwd)/../shared/models}
 
 case $preset in
   release) folder=build; targets=(all); selection=() ;;
-  debug) folder=build-debug; targets=(unit_tests unit-threads_tests packmerger packmergerd packmerger-tetgen); selection=(-L unit) ;;
+  debug) folder=build-debug; targets=(unit_tests unit-threads_tests fuzz_tests packmerger packmergerd packmerger-tetgen); selection=(-L 'unit|fuzz') ;;
   thread) folder=build-thread; targets=(unit-threads_tests); selection=(-L unit-threads) ;;
   *) echo "usage: ./test.sh [release|debug|thread]" >&2; exit 2 ;;
 esac

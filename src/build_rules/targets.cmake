@@ -21,6 +21,11 @@ if(PACKMERGER_SANITIZE)
   endif()
   target_link_options(packmerger_compile_options INTERFACE -fsanitize=${PACKMERGER_SANITIZE})
 endif()
+if(PACKMERGER_FUZZ)
+  # everything counts its branches for the fuzzers; only they have a fuzzer's main
+  target_compile_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # packmerger_library(NAME SOURCES ... LINKS ... PRIVATE_LINKS ...): the static library of one folder.
 # Its headers are included as "folder/file.h".
