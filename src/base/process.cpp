@@ -78,8 +78,11 @@ struct Pipe {
   ::dup2(err.write, 2);
   if (spec.nice != 0) ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + spec.nice);
   if (spec.max_memory_bytes != 0) {
-    const rlimit limit{spec.max_memory_bytes, spec.max_memory_bytes};
-    ::setrlimit(RLIMIT_AS, &limit);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_AS, &limit);  // root could raise what an ancestor was allowed
+    limit.rlim_max = std::min<rlim_t>(limit.rlim_max, spec.max_memory_bytes);
+    limit.rlim_cur = limit.rlim_max;
+    if (::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(127);
   }
   if (spec.folder.empty() || ::chdir(spec.folder.c_str()) == 0) ::execvpe(argv[0], argv, envp);
   const int reason = errno;

@@ -29,6 +29,7 @@ void run(const Arguments& arguments) {
     for (const Profile& profile : profiles)
       jobs.push_back(plan(profile, plan_options(arguments.plan), progress).job);
   }
+  if (!arguments.json) fmt::print("{}\n", sizes_of(jobs.front()));
   for (const Job& job : jobs) {
     all[job.profile.id] = comparison_json(job.estimates);
     if (!arguments.json) fmt::print("{}\n", comparison_table(job.estimates, title_of(job.profile)));

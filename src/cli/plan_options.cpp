@@ -1,11 +1,23 @@
 #include "cli/plan_options.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <map>
 
 namespace packmerger::cli {
 namespace {
 
 const std::map<std::string, double> kUnits{{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
+
+// CLI11's own checks let NaN and infinity through.
+const CLI::Validator kFinite(
+    [](const std::string& text) {
+      double value = 0;
+      const bool finite = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+      return finite ? std::string() : "\"" + text + "\" is not a finite number";
+    },
+    "", "finite");
 
 }  // namespace
 
@@ -17,16 +29,17 @@ void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
       ->capture_default_str();
   CLI::Option* scale =
       verb.add_option("--scale", arguments.scale, "multiplies the model, on top of its unit")
-          ->check(CLI::PositiveNumber);
+          ->check(CLI::PositiveNumber & kFinite);
   verb.add_option("--size", arguments.size_mm, "scales the longest side to this many mm")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::PositiveNumber & kFinite)
       ->excludes(scale);
-  verb.add_flag("--no-split", arguments.no_split, "packs the models as they are");
+  verb.add_flag("--no-split", arguments.no_split,
+                "packs the models as they are: neither hollowed nor divided");
   verb.add_flag("--no-hollow", arguments.no_hollow, "keeps the models solid");
   verb.add_option("--seed", arguments.seed, "repeats a result; another seed gives another one")
       ->capture_default_str();
   verb.add_option("--budget", arguments.budget_s, "seconds for the packing; 0: until it is done")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::NonNegativeNumber & kFinite)
       ->capture_default_str();
   verb.add_option("--set", arguments.settings, "key=value: any setting of the profile")->take_all();
 }
@@ -49,6 +62,16 @@ Profile chosen_profile(const std::string& id_or_path, const PlanArguments& argum
   for (const std::string& assignment : arguments.settings) set_profile_key(profile, assignment);
   check_settings(profile);
   return profile;
+}
+
+std::string sizes_of(const Job& job) {
+  std::string text;
+  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
+    const Vec3 size = bounding_box(job.models[i]).sizes();
+    text += fmt::format("{}: {:.1f} x {:.1f} x {:.1f} mm\n", job.inputs[i].file, size.x(), size.y(),
+                        size.z());
+  }
+  return text;
 }
 
 std::string title_of(const Profile& profile) { return profile.name + " (" + profile.id + ")"; }

@@ -33,6 +33,9 @@ PlanOptions plan_options(const PlanArguments& arguments);
 // Reads the profile and applies --set.
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments);
 
+// A line for each model with its size, so that a wrong unit is seen.
+std::string sizes_of(const Job& job);
+
 // The machine as the head of a table: "Objet30 (objet30)".
 std::string title_of(const Profile& profile);
 

@@ -28,12 +28,7 @@ const std::map<std::string, Variant> kVariants{{"packed", Variant::kPacked},
                                                {"cheapest", Variant::kCheapest}};
 
 void tell(const Job& job, const std::string& out) {
-  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
-    const Vec3 size = bounding_box(job.models[i]).sizes();
-    fmt::print("{}: {:.1f} x {:.1f} x {:.1f} mm\n", job.inputs[i].file, size.x(), size.y(),
-               size.z());
-  }
-  fmt::print("\n{}\n", comparison_table(job.estimates, title_of(job.profile)));
+  fmt::print("{}\n{}\n", sizes_of(job), comparison_table(job.estimates, title_of(job.profile)));
   fmt::print("Prepared: {}, {} part{}, {:.1f} mm high, in {}\n", job.variant, job.parts.size(),
              job.parts.size() == 1 ? "" : "s", job.height_mm, out);
   for (const Warning& warning : job.warnings)

@@ -78,7 +78,6 @@ void read_prepare_options(TableReader& reader, PrinterConfig& printer) {
   reader.number("scale", 1e-6, 1e6, "a number from 0.000001 to 1000000",
                 [&](double value) { add("--scale", fmt::format("{}", value)); });
   reader.text("variant", "one of packed, hollow, solid, cheapest", [&](const std::string& text) {
-    printer.variant = text;
     add("--variant", text);
     return text == "packed" || text == "hollow" || text == "solid" || text == "cheapest";
   });

@@ -40,7 +40,6 @@ struct PrinterConfig {
   Approve approve = Approve::kAsk;
   bool simulated = false;                    // no bed has to be cleared
   std::vector<std::string> prepare_options;  // for packmerger prepare: --units, --size, …
-  std::string variant = "packed";
 
   bool hands_over() const { return abilities.dialect == Dialect::kHandoff; }
   bool has_bed() const { return !simulated && !hands_over(); }

@@ -138,11 +138,13 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   say(job, note);
 }
 
-// Nothing was printed: the bed is as clear as it was before, and it is tried again.
+// Nothing of ours was printed, and it is tried again. The bed is as clear as it was before, unless
+// somebody else is printing: then there will be something on it.
 void Foreman::not_started(JobRecord job, const SendEnded& event) {
   const PrinterConfig* printer = config_.printer(job.printer);
   PrinterRecord record = store_.printer(job.printer);
-  record.bed_clear = record.bed_clear || (printer != nullptr && printer->has_bed());
+  const bool untouched = event.failure.fault != Fault::kBusy;
+  record.bed_clear = record.bed_clear || (untouched && printer != nullptr && printer->has_bed());
   job.state = JobState::kApproved;
   job.reason = sentence(event.failure);
   job.hint = event.failure.hint;

@@ -54,6 +54,7 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.trays = count_trays(report);
     job.title = fs::path(input.at("file").get<std::string>()).stem().string();
     job.input_sha256 = input.at("sha256").get<std::string>();
+    job.variant = report.value("variant", "packed");
     job.estimates = report.at("estimates").dump(-1, ' ', false, json::error_handler_t::replace);
     return job;
   } catch (const json::exception& error) {
@@ -67,14 +68,14 @@ Profile read_prepared_profile(const fs::path& folder) {
   return read_profile(fs::absolute(folder / "profile.toml").string());
 }
 
-bool pays(const std::string& estimates, const std::string& variant) {
-  if (variant == "cheapest") return true;
-  const json ways = json::parse(estimates, nullptr, false);
-  const std::optional<double> prepared = ways.is_object() ? cost_of(ways, variant) : std::nullopt;
-  if (!prepared) return false;
-  for (const char* way : {"as_is", "solid", "hollow", "packed"}) {
-    const std::optional<double> other = way == variant ? std::nullopt : cost_of(ways, way);
-    if (other && *other <= *prepared) return false;
+bool packing_pays(const PreparedJob& job) {
+  const json ways = json::parse(job.estimates, nullptr, false);
+  if (job.variant != "packed" || !ways.is_object()) return false;
+  const std::optional<double> packed = cost_of(ways, "packed");
+  if (!packed) return false;
+  for (const char* way : {"as_is", "solid", "hollow"}) {
+    const std::optional<double> other = cost_of(ways, way);
+    if (other && *other <= *packed) return false;
   }
   return true;
 }

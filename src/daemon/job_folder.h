@@ -12,6 +12,7 @@ struct PreparedJob {
   int trays = 1;
   std::string title;         // the first input's name without its ending
   std::string input_sha256;  // of the first input
+  std::string variant;       // what was prepared: packed, hollow or solid
   std::string estimates;     // job.json's "estimates", JSON text
 };
 
@@ -22,9 +23,9 @@ PreparedJob read_prepared(const fs::path& folder);
 // The profile the folder was prepared with.
 Profile read_prepared_profile(const fs::path& folder);
 
-// True when what was prepared (variant: packed, hollow, solid, or cheapest) costs less than every
-// other way that fits the printer, or when nothing else fits.
-bool pays(const std::string& estimates, const std::string& variant);
+// True when the job was packed and costs less so than every other way that fits the printer, or
+// when nothing else fits.
+bool packing_pays(const PreparedJob& job);
 
 // "program.gcode", "program-2.x3g", "tray-2.stl": a tray's file in the job folder.
 fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,

@@ -29,7 +29,6 @@ struct PrepareOrder {
   std::filesystem::path input;
   std::filesystem::path out;      // the job folder to be made
   std::vector<std::string> argv;  // of the child process
-  std::string variant;            // what is prepared, for the question whether it pays
   std::shared_ptr<std::atomic<bool>> cancel;
 };
 

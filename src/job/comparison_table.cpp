@@ -84,9 +84,11 @@ std::string recommendation(const Comparison& comparison) {
         "Pack it: {:.2f} {} less than printing it {} ({:+.0f} % time, {:+.0f} % cost).",
         unpacked->cost - packed.cost, packed.currency, other,
         100 * (packed.time_s / unpacked->time_s - 1), 100 * (packed.cost / unpacked->cost - 1));
-  return fmt::format(
-      "Packing does not pay here: printing it {} costs {:.2f} {} less. Use --variant {}.", other,
-      packed.cost - unpacked->cost, packed.currency, hollow ? "hollow" : "solid");
+  const double more = packed.cost - unpacked->cost;
+  const std::string costs =
+      more < 0.005 ? "as little" : fmt::format("{:.2f} {} less", more, packed.currency);
+  return fmt::format("Packing does not pay here: printing it {} costs {}. Use --variant {}.", other,
+                     costs, hollow ? "hollow" : "solid");
 }
 
 }  // namespace packmerger

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "job/arrangement.h"
-#include "shape/hollow.h"
 #include "shape/premerge.h"
 #include "shape/segment.h"
 #include "shape/smooth_cuts.h"
@@ -37,15 +36,10 @@ Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std:
   return divided;
 }
 
-Divided keep_whole(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
-                   const Progress& progress) {
+Divided keep_whole(const Mesh& surface) {
   Divided whole;
-  if (hollow_it) {
-    whole.shell = hollow(surface, profile.shape, warnings, progress);
-  } else {
-    whole.shell.outer = surface;
-    whole.shell.volume_mm3 = volume_mm3(surface);
-  }
+  whole.shell.outer = surface;
+  whole.shell.volume_mm3 = volume_mm3(surface);
   return whole;
 }
 

@@ -29,9 +29,8 @@ struct Divided {
 Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
                Warnings& warnings, const Progress& progress);
 
-// The model hollowed (or, with hollow_it false, as it is) and not divided.
-Divided keep_whole(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
-                   const Progress& progress);
+// The model as it is, solid and undivided.
+Divided keep_whole(const Mesh& surface);
 
 // The shell as one surface: outside and cavities.
 Mesh shell_surface(const Shell& shell);

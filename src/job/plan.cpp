@@ -12,6 +12,7 @@
 #include "job/unpacked.h"
 #include "printers/estimate.h"
 #include "printers/slice.h"
+#include "shape/hollow.h"
 
 namespace packmerger {
 namespace {
@@ -29,7 +30,7 @@ DividedModels divide_all(const std::vector<LoadedModel>& loaded, const Profile& 
       divided = std::make_shared<const Divided>(
           options.split
               ? divide(*model.surface, profile, options.hollow, options.seed, warnings, progress)
-              : keep_whole(*model.surface, profile, options.hollow, warnings, progress));
+              : keep_whole(*model.surface));
     }
     models.push_back(divided);
   }
@@ -42,13 +43,20 @@ WholeModels surfaces_of(const std::vector<LoadedModel>& loaded) {
   return surfaces;
 }
 
-WholeModels shells_of(const DividedModels& models) {
+// The models hollowed in one piece; models that are not divided have not been hollowed yet.
+WholeModels shells_of(const DividedModels& models, const Profile& profile,
+                      const PlanOptions& options, Warnings& warnings, const Progress& progress) {
   std::map<const Divided*, std::shared_ptr<const Mesh>> done;
   WholeModels shells;
   for (const auto& model : models) {
-    std::shared_ptr<const Mesh>& shell = done[model.get()];
-    if (!shell) shell = std::make_shared<const Mesh>(shell_surface(model->shell));
-    shells.push_back(shell);
+    std::shared_ptr<const Mesh>& surface = done[model.get()];
+    if (!surface) {
+      const bool to_hollow = options.hollow && !options.split;
+      surface = std::make_shared<const Mesh>(
+          shell_surface(to_hollow ? hollow(model->shell.outer, profile.shape, warnings, progress)
+                                  : model->shell));
+    }
+    shells.push_back(surface);
   }
   return shells;
 }
@@ -81,13 +89,13 @@ void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
 }
 
 // Each way is estimated by itself, several at once: a slicer works on one core most of its time.
-Comparison compare_ways(const Plan& plan, const std::optional<Arrangement>& as_is,
-                        const Profile& profile, const Progress& progress) {
+void compare_ways(Plan& plan, std::optional<Arrangement> as_is, const Profile& profile,
+                  const Progress& progress) {
   struct Way {
     const std::optional<Arrangement>& way;
     std::optional<Estimate>& estimate;
   };
-  Comparison comparison;
+  Comparison& comparison = plan.job.estimates;
   const bool stands_best = as_is && plan.solid && same_poses(*as_is, *plan.solid);
   std::vector<Way> ways{{plan.packed, comparison.packed},
                         {plan.hollow, comparison.hollow},
@@ -99,7 +107,11 @@ Comparison compare_ways(const Plan& plan, const std::optional<Arrangement>& as_i
     progress.report("estimating", 0.2 + 0.8 * ++done / static_cast<double>(ways.size()));
   });
   if (stands_best) comparison.as_is = comparison.solid;
-  return comparison;
+  // The slicer need not agree with the ranking of the six ways up, of which the file's own is one.
+  if (!comparison.as_is || !comparison.solid) return;
+  if (comparison.as_is->cost >= comparison.solid->cost) return;
+  comparison.solid = comparison.as_is;
+  plan.solid = std::move(as_is);
 }
 
 void drop_repeated(Warnings& warnings) {
@@ -146,11 +158,12 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   record(plan.job, loaded, models);
 
   timed(times, "pack", [&] { pack_into(plan, models, profile, options, progress); });
-  plan.job.estimates = timed(times, "estimate", [&] {
+  timed(times, "estimate", [&] {
     progress.report("estimating", 0);
     plan.solid = stand_best(surfaces_of(loaded), profile, progress);
-    plan.hollow = stand_best(shells_of(models), profile, progress);
-    return compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), profile, progress);
+    plan.hollow =
+        stand_best(shells_of(models, profile, options, warnings, progress), profile, progress);
+    compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), profile, progress);
   });
 
   drop_repeated(warnings);

@@ -48,6 +48,8 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
     job.support_mm3 += measured.support_mm3;
     job.height_mm = std::max(job.height_mm, measured.size_mm.z());
   }
+  job.shell_volume_mm3 = 0;  // of what is printed, which is no shell where the variant is solid
+  for (const JobPart& part : arrangement.parts) job.shell_volume_mm3 += part.volume_mm3;
   job.final_segments = static_cast<int>(arrangement.parts.size());
   job.parts = std::move(arrangement.parts);
   job.removal_order = std::move(arrangement.removal_order);
@@ -76,6 +78,7 @@ std::vector<TrayFiles> programs(Job& job, const std::vector<Tray>& trays,
 
 Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
             const std::filesystem::path& out, const Progress& progress) {
+  check_job_folder(out);
   Plan planned = plan(profile, options, progress);
   const Variant chosen = decide(variant, planned);
   Arrangement arrangement = take(planned, chosen);

@@ -14,8 +14,9 @@ namespace packmerger {
 enum class Variant { kPacked, kHollow, kSolid, kCheapest };
 
 // Writes the job folder `out` (docs/JOB_FOLDER.md) and returns what it tells. `out` must not exist
-// yet; it is whole or absent afterwards. Throws what plan() throws, Error{kBadInput} when the
-// wanted variant fits no tray, Error{kUnavailable} when the slicer is missing, Error{kCannotWrite}.
+// yet, which is looked at first; it is whole or absent afterwards. Throws what plan() throws,
+// Error{kBadInput} when the wanted variant fits no tray, Error{kUnavailable} when the slicer is
+// missing, Error{kCannotWrite}.
 Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
             const std::filesystem::path& out, const Progress& progress);
 

@@ -172,7 +172,7 @@ DistanceGrid::DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, 
 DistanceGrid::DistanceGrid(DistanceGrid&&) noexcept = default;
 DistanceGrid::~DistanceGrid() = default;
 
-TriangleSoup DistanceGrid::level(double level_mm, const Progress& progress) {
+std::optional<TriangleSoup> DistanceGrid::level(double level_mm, const Progress& progress) {
   const double level = level_mm / grid_->voxel_mm;
   for (int i = 0; i < kMaxMends; ++i) {
     progress.check();
@@ -184,8 +184,7 @@ TriangleSoup DistanceGrid::level(double level_mm, const Progress& progress) {
     }
     for (const int point : pinches) grid_->give_way(soup.points[point], level);
   }
-  throw Error(Fault::kInternal, "A level of the distance grid stayed non-manifold",
-              "Change voxel_mm a little and try again.");
+  return std::nullopt;
 }
 
 }  // namespace packmerger

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "base/progress.h"
 #include "model/mesh.h"
@@ -23,8 +24,9 @@ class DistanceGrid {
 
   // The surface around what is less than level_mm outside (negative: more than that inside), closed
   // and manifold, normals pointing away from it; possibly empty. Where the level pinches itself,
-  // the enclosed side gives way, by up to a voxel, and the grid keeps that.
-  TriangleSoup level(double level_mm, const Progress& progress);
+  // the enclosed side gives way, by up to a voxel, and the grid keeps that. Empty optional: it
+  // stays pinched; another level or voxel may not be.
+  std::optional<TriangleSoup> level(double level_mm, const Progress& progress);
 
  private:
   struct Grid;

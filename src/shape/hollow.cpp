@@ -80,8 +80,10 @@ std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& out
   for (const double extra : {0.0, 0.5, 1.0}) {
     const double depth = settings.wall_mm + extra * settings.voxel_mm;
     std::vector<TriangleSoup> all;
+    const std::optional<TriangleSoup> level = grid.level(-depth, progress);
+    if (!level) continue;
     bool good = true;
-    for (const TriangleSoup& fine : split_components(grid.level(-depth, progress))) {
+    for (const TriangleSoup& fine : split_components(*level)) {
       // Islands of matter in a cavity have a negative volume.
       if (!good || signed_volume_mm3(fine) < settings.min_cavity_mm3) continue;
       progress.report("hollowing", 0.6);

@@ -22,7 +22,8 @@ class SegmentGraph {
       : fit_(fit),
         volumes_(segment_volumes(mesh, segments)),
         extents_(fit.extents(mesh, segments)),
-        areas_(segments.count) {
+        areas_(segments.count),
+        round_cavities_(segments_round_cavities(mesh, segments)) {
     for (int label = 0; label < segments.count; ++label) groups_.push_back({label});
     for (const SegmentEdge& edge : adjacency(mesh, segments)) {
       areas_[edge.a][edge.b] = edge.area_mm2;
@@ -34,7 +35,9 @@ class SegmentGraph {
   bool is_alive(int v) const { return !groups_[v].empty(); }
   double volume_mm3(int v) const { return volumes_[v]; }
   const std::map<int, double>& areas_mm2(int v) const { return areas_[v]; }  // by neighbour
-  bool may_merge(int a, int b) const { return fit_.fits(extents_[a], extents_[b]); }
+  bool may_merge(int a, int b) const {
+    return fit_.fits(extents_[a], extents_[b]) && !shuts_a_cavity(a, b);
+  }
 
   // Contracts the edge between two neighbours.
   void merge(int a, int b) {
@@ -50,6 +53,11 @@ class SegmentGraph {
       areas_[other][into] = areas_[into][other];
     }
     areas_[from].clear();
+    for (std::vector<int>& round_it : round_cavities_) {
+      std::replace(round_it.begin(), round_it.end(), from, into);
+      std::sort(round_it.begin(), round_it.end());
+      round_it.erase(std::unique(round_it.begin(), round_it.end()), round_it.end());
+    }
   }
 
   // The groups that are left, in the order of their lowest labels.
@@ -61,10 +69,18 @@ class SegmentGraph {
   }
 
  private:
+  // Nobody could take support out of a cavity that lies in one part.
+  bool shuts_a_cavity(int a, int b) const {
+    const auto pair = std::minmax(a, b);
+    const std::vector<int> both{pair.first, pair.second};
+    return std::find(round_cavities_.begin(), round_cavities_.end(), both) != round_cavities_.end();
+  }
+
   const FitTest& fit_;
   std::vector<double> volumes_;
   std::vector<FitTest::Extents> extents_;
   std::vector<std::map<int, double>> areas_;
+  std::vector<std::vector<int>> round_cavities_;  // the groups that each cavity touches, sorted
   std::vector<std::vector<int>> groups_;
 };
 
@@ -143,14 +159,14 @@ void warn_of_leftovers(const SegmentGraph& graph, double volume_mm3, const Shape
          std::to_string(small_segments) + " of " + std::to_string(segments) +
              " segments stay smaller than " + number(100 * settings.min_volume_fraction) +
              " % of the model's volume (the smallest " + number(100 * least_volume / volume_mm3) +
-             " %), because no merge that fits the build volume is left."});
+             " %), because no merge is left that fits the build volume and shuts no cavity."});
   if (small_joints > 0)
     warnings.push_back(
-        {"small_glue_area", std::to_string(small_joints) + " of " + std::to_string(joints) +
-                                " joints between segments stay smaller than " +
-                                number(settings.min_glue_area_mm2) + " mm² (the smallest " +
-                                number(least_area) +
-                                " mm²), because no merge that fits the build volume is left."});
+        {"small_glue_area",
+         std::to_string(small_joints) + " of " + std::to_string(joints) +
+             " joints between segments stay smaller than " + number(settings.min_glue_area_mm2) +
+             " mm² (the smallest " + number(least_area) +
+             " mm²), because no merge is left that fits the build volume and shuts no cavity."});
 }
 
 }  // namespace

@@ -18,10 +18,11 @@ struct BuildVolume {
 // First the pair with the smallest cross-section is merged until every cross-section is at least
 // settings.min_glue_area_mm2; then the segment with the smallest volume is merged into its smallest
 // neighbour until each holds at least settings.min_volume_fraction of V_o. A merge is permitted
-// only when the union's axis-aligned box fits `build` in at least one of the packer's rotations.
-// What no permitted merge can mend stays and is told in `warnings`: "small_glue_area",
-// "small_segment". The parts are made manifold again (tetrahedra of `mesh` may be split). Labels
-// keep the order of the lowest old label in each. Throws Error{kInterrupted}.
+// only when the union's axis-aligned box fits `build` in at least one of the packer's rotations,
+// and when it leaves no hollowed cavity with one segment all round it. What no permitted merge can
+// mend stays and is told in `warnings`: "small_glue_area", "small_segment". The parts are made
+// manifold again (tetrahedra of `mesh` may be split). Labels keep the order of the lowest old label
+// in each. Throws Error{kInterrupted}.
 Segments premerge(TetMesh& mesh, const Segments& segments, const ShapeSettings& settings,
                   const BuildVolume& build, Warnings& warnings, const Progress& progress);
 

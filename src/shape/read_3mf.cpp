@@ -19,6 +19,9 @@ namespace {
 
 constexpr std::uint64_t kMaxInflated = std::uint64_t{512} << 20;
 constexpr std::uint64_t kMaxRatio = 200;  // meshes as XML shrink to a tenth, bombs to a thousandth
+constexpr double kMaxTreeBytes = 2e9;     // of the XML as a tree in memory
+constexpr double kNodeBytes = 72;         // of a node in pugixml's tree, with its share of a page
+constexpr double kAttributeBytes = 40;
 constexpr int kMaxDepth = 64;
 constexpr int kMaxVisits = 1'000'000;  // components may double at every level
 
@@ -83,7 +86,18 @@ pugi::xml_node child(const pugi::xml_node& node, std::string_view name) {
   return {};
 }
 
+// The tree can be twenty times as large as its text.
+void check_tree_size(std::string_view text) {
+  const auto count = [&](char c) {
+    return static_cast<double>(std::count(text.begin(), text.end(), c));
+  };
+  if (kNodeBytes * count('<') + kAttributeBytes * count('=') > kMaxTreeBytes)
+    throw Error(Fault::kBadInput, "The 3MF file holds more elements than a model can need",
+                "Reduce the model, or export it as binary STL.");
+}
+
 pugi::xml_document parsed(std::string& text) {
+  check_tree_size(text);
   pugi::xml_document document;
   if (!document.load_buffer_inplace(text.data(), text.size()))
     refuse_file("its XML is not well-formed");

@@ -158,7 +158,8 @@ std::optional<Resampled> from_grid(const Mesh& mesh, Measure& measure, const Pro
     const double voxel = kVoxels[round] * measure.tolerance_mm;
     if (area / (voxel * voxel) * (2 * kBand + 4) > kMaxVoxels) break;
     DistanceGrid grid(mesh, voxel, kBand * voxel, kBand * voxel, progress);
-    const auto fine = without_grains(grid.level(0, progress), voxel);
+    const auto level = grid.level(0, progress);
+    const auto fine = level ? without_grains(*level, voxel) : std::nullopt;
     if (!fine) continue;
     auto surface = clean(*fine, measure.query, voxel, measure.tolerance_mm, measure.max_edge_mm);
     if (!surface) continue;

@@ -72,6 +72,17 @@ TetgenInput input_for(const Shell& shell, const ShapeSettings& settings, double 
   return input;
 }
 
+// A very flat solid model would be cut into countless facets.
+void check_facets(const Shell& shell, double max_volume_mm3) {
+  constexpr double kMostFacets = 5e6;
+  const double edge = longest_surface_edge_mm(max_volume_mm3);
+  double area = area_mm2(shell.outer);
+  for (const Mesh& cavity : shell.cavities) area += area_mm2(cavity);
+  if (area / (edge * edge / 4) > kMostFacets)
+    throw Error(Fault::kBadInput, "The model is too thin for its size to be divided",
+                "Print it with --no-split, or make it thicker.");
+}
+
 // Empty when TetGen refused or died.
 std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress& progress) {
   const TemporaryFolder folder;
@@ -136,6 +147,7 @@ std::optional<TetMesh> tetrahedralize(const Shell& shell, const ShapeSettings& s
   const double max_volume =
       shell.volume_mm3 * std::min(settings.max_tetrahedron_fraction,
                                   1 / (kPerCluster * std::max(1, settings.clusters)));
+  check_facets(shell, max_volume);
   auto output = run_tetgen(input_for(shell, settings, max_volume), progress);
   if (!output) return std::nullopt;
   progress.report("making tetrahedra", 0.8);

@@ -91,10 +91,15 @@ Json part_json(const JobPart& part) {
           {"neighbours", neighbours}};
 }
 
-Json inputs_json(const std::vector<JobInput>& inputs) {
+Json inputs_json(const Job& job) {
   Json list = Json::array();
-  for (const JobInput& input : inputs)
-    list.push_back({{"file", input.file}, {"sha256", input.sha256}, {"scale", input.scale}});
+  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
+    const JobInput& input = job.inputs[i];
+    list.push_back({{"file", input.file},
+                    {"sha256", input.sha256},
+                    {"scale", input.scale},
+                    {"size_mm", vector_json(bounding_box(job.models[i]).sizes())}});
+  }
   return list;
 }
 
@@ -141,7 +146,7 @@ Comparison comparison_of(const Json& json) {
 Json job_json(const Job& job) {
   Json report = {
       {"version", 1},
-      {"inputs", inputs_json(job.inputs)},
+      {"inputs", inputs_json(job)},
       {"profile", {{"id", job.profile.id}, {"sha256", sha256_hex(profile_toml(job.profile))}}},
       {"seed", job.seed},
       {"variant", job.variant},

@@ -96,19 +96,19 @@ std::string assembly_glb(const Job& job) {
   return glb_bytes(parts);
 }
 
-void refuse_existing(const fs::path& out) {
+}  // namespace
+
+void check_job_folder(const fs::path& out) {
   std::error_code ignored;
   if (!fs::exists(fs::symlink_status(out, ignored))) return;
   throw Error(Fault::kCannotWrite, fmt::format("\"{}\" is there already", out.string()),
               "Name a folder that does not exist yet, or remove this one first.");
 }
 
-}  // namespace
-
 void write_job_folder(const Job& job, const std::vector<TrayFiles>& trays, const fs::path& out,
                       const Progress& progress) {
   check(job, trays.size());
-  refuse_existing(out);
+  check_job_folder(out);
   TemporaryFolder folder = TemporaryFolder::beside(out);
   fs::create_directory(folder.path() / "parts");
 

@@ -18,6 +18,10 @@ struct TrayFiles {
   std::string program;                           // the program's bytes
 };
 
+// Throws Error{kCannotWrite} when there is something at `out` already. For the start of a long work
+// whose result goes there.
+void check_job_folder(const fs::path& out);
+
 // Writes job.json, profile.toml, tray.3mf, tray.stl, parts/, preview.glb, assembly.glb, preview.png
 // and the programs into a temporary sibling of `out` and renames it: afterwards `out` is whole, or
 // it is absent. trays: one entry per tray, in order. `out` is a path that does not exist in a

@@ -1,5 +1,6 @@
 """Files that no model can be made of, each with the exit codes that are right for it."""
 import io
+import random
 import struct
 import zipfile
 import zlib
@@ -50,7 +51,7 @@ def ply(vertices=None, faces=None, form="ascii", first=None):
     return head.encode() + points.astype("<f4").tobytes() + b"".join(b"\x03" + t.astype("<i4").tobytes() for t in index)
 
 
-def three_mf(model, name="3D/3dmodel.model"):
+def three_mf(model, name="3D/3dmodel.model", ballast=b""):
     package = "http://schemas.openxmlformats.org/package/2006"
     kind = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
     data = io.BytesIO()
@@ -59,6 +60,7 @@ def three_mf(model, name="3D/3dmodel.model"):
         archive.writestr("_rels/.rels", f'<Relationships xmlns="{package}/relationships"><Relationship Id="r" '
                          f'Type="{kind}" Target="/3D/3dmodel.model"/></Relationships>')
         archive.writestr(name, model)
+        archive.writestr("ballast", ballast, zipfile.ZIP_STORED)  # makes what is inflated look plausible
     return data.getvalue()
 
 
@@ -173,6 +175,8 @@ CASES = {
                                                            '<item objectid="7"/>')), BAD),
     "3MF with entities": ("a.3mf", three_mf('<!DOCTYPE a [<!ENTITY b "' + "x" * 999 + '">' + "".join(
         f'<!ENTITY {chr(98 + n)} "{("&" + chr(97 + n) + ";") * 50}">' for n in range(1, 9)) + "]><model>&j;</model>"), BAD),
+    "3MF of countless elements": ("a.3mf", lambda: three_mf(
+        "<model>" + "<a/>" * (48 << 20) + "</model>", ballast=random.Random(1).randbytes(1 << 20)), BAD),
     "zip bomb": ("a.3mf", lambda: zip_bomb(62 * (64 << 20)), BAD),
     "zip bomb that tells a small size": ("a.3mf", lambda: zip_bomb(1000), BAD),
 }

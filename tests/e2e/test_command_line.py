@@ -47,7 +47,8 @@ class CommandLine(unittest.TestCase):
 class Usage(CommandLine):
     def test_wrong_usage(self):
         good = ["prepare", self.sphere, "--profile", "objet30", "--out", self.folder / "job"]
-        for wrong in (["--scale", "-1"], ["--scale", "2", "--size", "3"], ["--size", "0"], ["--units", "furlong"],
+        for wrong in (["--scale", "-1"], ["--scale", "2", "--size", "3"], ["--size", "0"], ["--scale", "nan"],
+                      ["--size", "inf"], ["--budget", "nan"], ["--units", "furlong"],
                       ["--variant", "best"], ["--seed", "x"], ["--budget", "-1"], ["--set", "nonsense=1"],
                       ["--set", "gap_mm=wide"], ["--set", "gap_mm"], ["--set", "gap_mm=-1"], ["--nonsense"]):
             with self.subTest(" ".join(wrong)):
@@ -149,7 +150,7 @@ class Jobs(CommandLine):
         return found
 
     def test_same_seed_same_bytes_on_one_thread_and_many(self):
-        arguments = (self.sphere, self.torus, "--no-split", "--profile", "objet30", "--seed", "5", *FAST)
+        arguments = (self.sphere, self.torus, "--profile", "objet30", "--seed", "5", *FAST)
         self.assertEqual(self.prepare(*arguments, out="many").code, 0)
         self.assertEqual(self.prepare(*arguments, out="one", prefix=("taskset", "-c", "0")).code, 0)
         many, one = self.contents("many"), self.contents("one")

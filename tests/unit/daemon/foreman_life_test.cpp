@@ -110,8 +110,10 @@ class RandomLife {
     if (order.control->cancelled()) {
       shop_.tell(SendEnded{order.job, SendOutcome::kCancelled, {Fault::kInterrupted, "x", ""}, ""});
     } else if (random_.below(4) == 0) {
-      clear_.insert(name);
-      shop_.tell(SendEnded{order.job, SendOutcome::kNotStarted, {Fault::kBusy, "x", "y"}, ""});
+      const bool untouched = random_.below(2) == 0;
+      if (untouched) clear_.insert(name);
+      const Fault fault = untouched ? Fault::kUnavailable : Fault::kBusy;
+      shop_.tell(SendEnded{order.job, SendOutcome::kNotStarted, {fault, "x", "y"}, ""});
     } else if (random_.below(4) == 0) {
       printed_.insert({order.job, order.tray});
       shop_.tell(SendEnded{order.job, SendOutcome::kFailed, {Fault::kIo, "x", "y"}, ""});

@@ -15,7 +15,7 @@ using fixtures::fault_of;
 
 void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
-const char* const kReport = R"({"version": 1,
+const char* const kReport = R"({"version": 1, "variant": "packed",
   "inputs": [{"file": "bunny.stl", "sha256": "ab", "scale": 1}],
   "parts": [{"id": 1, "tray": 1}, {"id": 2, "tray": 2}],
   "estimates": {"packed": {"fits": true, "cost": 1.5}}})";
@@ -37,7 +37,8 @@ TEST(JobFolder, ReadsTheReport) {
   EXPECT_EQ(job.trays, 2);
   EXPECT_EQ(job.title, "bunny");
   EXPECT_EQ(job.input_sha256, "ab");
-  EXPECT_TRUE(pays(job.estimates, "packed"));
+  EXPECT_EQ(job.variant, "packed");
+  EXPECT_TRUE(packing_pays(job));
 }
 
 TEST(JobFolder, RefusesWhatIsNoReport) {
@@ -54,16 +55,24 @@ TEST(JobFolder, RefusesWhatIsNoReport) {
   }
 }
 
-TEST(Pays, OnlyWhenEveryOtherWayThatFitsIsDearer) {
+TEST(PackingPays, OnlyWhenEveryOtherWayThatFitsIsDearer) {
+  const auto pays = [](const std::string& estimates, const std::string& variant) {
+    PreparedJob job;
+    job.variant = variant;
+    job.estimates = estimates;
+    return packing_pays(job);
+  };
   const std::string cheap =
       R"({"packed": {"fits": true, "cost": 5}, "hollow": {"fits": true, "cost": 6},
     "solid": {"fits": false, "cost": null}, "as_is": {"fits": false, "cost": null}})";
   EXPECT_TRUE(pays(cheap, "packed"));
   EXPECT_FALSE(pays(cheap, "hollow"));
-  EXPECT_FALSE(pays(cheap, "solid")) << "it does not fit";
-  EXPECT_TRUE(pays(cheap, "cheapest"));
+  EXPECT_FALSE(pays(cheap, "solid")) << "it is not what was found to pay";
   EXPECT_FALSE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": true, "cost": 5}})",
                     "packed"));
+  EXPECT_FALSE(
+      pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": true, "cost": 4}})", "solid"))
+      << "asked for as the cheapest way, which is not packing";
   EXPECT_TRUE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": false}})", "packed"));
   for (const char* text : {"", "[]", "{}", R"({"packed": null})", R"({"packed": {"fits": true}})"})
     EXPECT_FALSE(pays(text, "packed")) << text;

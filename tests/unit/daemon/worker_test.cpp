@@ -60,7 +60,6 @@ class WorkerTest : public testing::Test {
     order.out = folder_.path() / "job";
     order.argv = {program_.string(), "prepare", order.input.string(), "--profile",
                   "marlin",          "--out",   order.out.string()};
-    order.variant = "packed";
     order.cancel = std::make_shared<std::atomic<bool>>(false);
     return order;
   }

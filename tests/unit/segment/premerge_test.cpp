@@ -134,6 +134,23 @@ TEST(Premerge, SmallestCrossSectionFirstThenSmallestVolumeIntoSmallestNeighbour)
       premerge(mesh, sliced(mesh, {50, 60, 100}), settings, kHuge, warnings, Progress()).count, 1);
 }
 
+TEST(Premerge, ShutsNoCavity) {
+  ShapeSettings settings;
+  settings.min_volume_fraction = 1;  // all in one part, but for the cavity
+  TetMesh mesh = fixtures::cube_shell(10, 2, 50);
+  Segments halves{{}, 2};
+  for (int t = 0; t < mesh.count(); ++t)
+    halves.of_tetrahedron.push_back(mesh.centroid(t).x() < 0 ? 0 : 1);
+  Warnings warnings;
+  EXPECT_EQ(premerge(mesh, halves, settings, kHuge, warnings, Progress()).count, 2);
+  EXPECT_TRUE(warns(warnings, "small_segment"));
+  // a cavity that lies in one segment from the start is no reason to keep another one apart
+  Segments corner{{}, 2};
+  for (int t = 0; t < mesh.count(); ++t)
+    corner.of_tetrahedron.push_back(mesh.centroid(t).maxCoeff() < -20 ? 0 : 1);
+  EXPECT_EQ(premerge(mesh, corner, settings, kHuge, warnings, Progress()).count, 1);
+}
+
 TEST(Premerge, LeavesALonelySmallComponentWithAWarning) {
   TetMesh mesh = fixtures::grid_mesh(
       {20, 6, 6}, 3,
