@@ -22,8 +22,9 @@ if(PACKMERGER_SANITIZE)
   target_link_options(packmerger_compile_options INTERFACE -fsanitize=${PACKMERGER_SANITIZE})
 endif()
 if(PACKMERGER_FUZZ)
-  # everything counts its branches for the fuzzers; only they have a fuzzer's main
-  target_compile_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link)
+  # all our code counts its branches for the fuzzers; only they have a fuzzer's main
+  target_compile_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link
+    -fsanitize-coverage-ignorelist=${CMAKE_CURRENT_LIST_DIR}/coverage_ignore.txt)
   target_link_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
