@@ -19,6 +19,7 @@ from shapes import sphere
 
 FAST = ("--set", "tabu_patience=1", "--set", "tabu_samples=2")
 PATIENCE_S = 400
+BOX = ("min_x", "min_y", "min_z", "max_x", "max_y", "max_z")
 
 
 class Background:
@@ -115,7 +116,7 @@ set = ["tabu_patience=1", "tabu_samples=2"]
         meant = [text for text in (line.split(";")[0].strip() for line in lines) if text]
         executed = record.read_text().splitlines()
         start = executed.index(meant[0])
-        own = {"M105", "M115", "M110", "M114", "M155", "M27"}  # what a link asks by itself
+        own = {"M105", "M115", "M110", "M114", "M155", "M27", "M400"}  # what a link asks by itself
         self.assertEqual([line for line in executed[start:] if line.split()[0] not in own],
                          [line for line in meant if line.split()[0] not in own])
 
@@ -136,9 +137,14 @@ set = ["tabu_patience=1", "tabu_samples=2"]
         for name in ("tray.3mf", "tray.stl"):
             done = subprocess.run(["prusa-slicer", "--info", self.folder / "job" / name], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-            figures = dict(re.findall(r"^(\w+) = (\S+)$", done.stdout, re.MULTILINE))
-            shown[name] = {key: float(figures[key]) for key in
-                           ("size_x", "size_y", "size_z", "min_x", "min_y", "max_x", "max_y", "volume")}
+            self.assertEqual(set(re.findall(r"^manifold = (\S+)$", done.stdout, re.MULTILINE)), {"yes"})
+            # one section an object
+            figures = {key: [float(value) for value in re.findall(rf"^{key} = (\S+)$", done.stdout, re.MULTILINE)]
+                       for key in ("volume", *BOX)}
+            shown[name] = {key: min(values) if key in BOX[:3] else max(values) if key in BOX else sum(values)
+                           for key, values in figures.items()}
+            if name == "tray.3mf":
+                self.assertEqual(len(figures["volume"]), len(told["parts"]))
         for key, value in shown["tray.stl"].items():
             self.assertAlmostEqual(shown["tray.3mf"][key], value, delta=1e-3 * max(1, abs(value)), msg=key)
 
