@@ -19,8 +19,7 @@ constexpr double kNozzleMm = 0.4;
 constexpr double kSkirtDistanceMm = 6;
 constexpr double kFirstLayerGrowthMm = 3;  // of support on the plate
 
-// Support reaches past the part by this many nozzle widths (measured: 1.43 mm with 0.4 mm).
-constexpr double kSupportReachNozzles = 4;
+constexpr double kSupportSpacingMm = 2.5;
 constexpr double kLineNozzles = 1.3;  // a first layer's line, generously
 
 constexpr std::array<std::string_view, 8> kDerived{"bed_shape",
@@ -121,10 +120,13 @@ bool same_value(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+// The slicer fills whole cells of a grid with support: cells as wide as the space between two lines
+// and a line.
 double slicer_margin_mm(const Profile& profile) {
   if (profile.dialect == Dialect::kHandoff) return 0;
   if (option(profile, "support_material", 0) == 0) return 0;
-  return kSupportReachNozzles * option(profile, "nozzle_diameter", kNozzleMm);
+  return option(profile, "support_material_spacing", kSupportSpacingMm) +
+         kLineNozzles * option(profile, "nozzle_diameter", kNozzleMm);
 }
 
 SlicerConfig slicer_config(const Profile& profile, SliceFlavour flavour, double room_mm) {

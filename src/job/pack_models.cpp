@@ -117,6 +117,20 @@ Arrangement arrange(const Models& models, const PackProblem& problem, const Pack
   return arrangement;
 }
 
+// Sliced trays stand in the middle of the plate, where no clip, edge or priming line is in the way.
+// What is handed over is moved by the maker's program as it likes.
+void centre(Arrangement& arrangement, const Profile& profile) {
+  if (profile.dialect == Dialect::kHandoff) return;
+  std::vector<Box3> contents(arrangement.trays);
+  for (const JobPart& part : arrangement.parts)
+    contents[part.tray - 1].extend(bounding_box(transformed(part.surface, part.pose)));
+  for (JobPart& part : arrangement.parts) {
+    Vec3 shift = profile.build() / 2 - contents[part.tray - 1].center();
+    shift.z() = 0;
+    part.pose.pretranslate(shift);
+  }
+}
+
 // Turning segments into parts may move a cut by a little, so a part may stand a little too deep.
 void lift_above_plate(Arrangement& arrangement) {
   for (JobPart& part : arrangement.parts) {
@@ -152,6 +166,7 @@ Arrangement pack_models(const Models& models, const Profile& profile, std::uint6
     const Packing packing = pack(problem, progress);
     Arrangement arrangement = arrange(models, problem, packing, room_of(profile), progress);
     lift_above_plate(arrangement);
+    centre(arrangement, profile);
     missing = shortfall(arrangement, profile);
     if (missing <= 0) return arrangement;
     problem.gap_mm += missing + 0.05;

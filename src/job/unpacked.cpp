@@ -53,6 +53,14 @@ Pose standing_at(const Mat3& way, const Box3& box, const Vec2& corner) {
   return pose;
 }
 
+// The margin for support is given up where a model fills the build volume.
+Room room_for(const std::vector<Box3>& boxes, const Profile& profile) {
+  const Room room = room_of(profile);
+  const bool fit = std::all_of(boxes.begin(), boxes.end(),
+                               [&](const Box3& box) { return fits(box.sizes(), room.size_mm); });
+  return fit ? room : Room{Vec3::Zero(), profile.build()};
+}
+
 Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
                     const Profile& profile) {
   std::vector<Box3> boxes;
@@ -61,7 +69,7 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     boxes.push_back(turned_box(*models[m], ways[m]));
     sizes.push_back(boxes.back().sizes().head<2>());
   }
-  const Room room = room_of(profile);
+  const Room room = room_for(boxes, profile);
   const std::vector<Slot> slots = side_by_side(sizes, room.size_mm.head<2>(), profile.pack.gap_mm);
   Arrangement arrangement;
   for (std::size_t m = 0; m < models.size(); ++m) {
@@ -85,7 +93,7 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
   std::vector<Rank> ranks(ways.size(), {std::numeric_limits<double>::infinity(), 0, 0});
   parallel_for(ways.size(), [&](std::size_t i) {
     const Box3 box = turned_box(model, ways[i]);
-    if (!fits(box.sizes(), room_of(profile).size_mm)) return;
+    if (!fits(box.sizes(), profile.build())) return;
     Tray tray;
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
     const Estimate one = estimate(profile, {tray}, Assembly{}, progress);
@@ -135,7 +143,7 @@ std::vector<Slot> side_by_side(const std::vector<Vec2>& sizes, const Vec2& tray_
 
 std::optional<Arrangement> stand_as_is(const WholeModels& models, const Profile& profile) {
   for (const auto& model : models)
-    if (!fits(bounding_box(*model).sizes(), room_of(profile).size_mm)) return std::nullopt;
+    if (!fits(bounding_box(*model).sizes(), profile.build())) return std::nullopt;
   return arrange(models, std::vector<Mat3>(models.size(), Mat3::Identity()), profile);
 }
 

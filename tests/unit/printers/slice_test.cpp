@@ -59,9 +59,9 @@ TEST(SlicerSettings, FollowFromTheProfile) {
 TEST(SlicerSettings, LeavesOutWhatHasNoRoom) {
   Profile profile = replicator();
   profile.slicer.options["skirts"] = "1";
-  EXPECT_NEAR(slicer_margin_mm(profile), 1.6, 1e-12);
-  EXPECT_FALSE(slicer_config(profile, SliceFlavour::kProgram, 12).skirt_left_out);
-  const SlicerConfig tight = slicer_config(profile, SliceFlavour::kProgram, 2);
+  EXPECT_NEAR(slicer_margin_mm(profile), 3.02, 1e-12);
+  EXPECT_FALSE(slicer_config(profile, SliceFlavour::kProgram, 13).skirt_left_out);
+  const SlicerConfig tight = slicer_config(profile, SliceFlavour::kProgram, 3.42);
   EXPECT_TRUE(tight.skirt_left_out);
   EXPECT_EQ(tight.values.at("skirts"), "0");
   EXPECT_EQ(tight.values.at("raft_first_layer_expansion"), "0.4");
