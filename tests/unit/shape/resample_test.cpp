@@ -67,15 +67,14 @@ TEST(Resample, KeepsTheTrianglesThatDoNotCross) {
 TEST(ResampleOnGrid, IsTheFallBack) {
   TriangleSoup other = fixtures::cube(15);
   for (Vec3& point : other.points) point += Vec3(7, 8, 9);
+  double volume = 0;
   for (const TriangleSoup& model : {crossing_balls(), fixtures::together(fixtures::cube(15), other),
                                     fixtures::nested_cubes(20, 10)}) {
-    const Resampled resampled = resample_on_grid(closed_mesh(model), 0.3, Progress());
-    expect_clean(resampled, 0.3);
+    const Resampled resampled = resample_on_grid(closed_mesh(model), 0.5, Progress());
+    expect_clean(resampled, 0.5);
+    volume = volume_mm3(resampled.surface);
   }
-  EXPECT_NEAR(
-      volume_mm3(
-          resample_on_grid(closed_mesh(fixtures::nested_cubes(20, 10)), 0.3, Progress()).surface),
-      7000, 70);
+  EXPECT_NEAR(volume, 7000, 70) << "the cavity of the last one is kept";
 }
 
 TEST(ResampleOnGrid, RefusesAToleranceOutOfReach) {
