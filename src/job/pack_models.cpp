@@ -25,41 +25,6 @@ std::vector<int> first_items(const Models& models) {
   return first;
 }
 
-PackProblem problem_of(const Models& models, const Profile& profile, std::uint64_t seed,
-                       double budget_s) {
-  PackProblem problem;
-  for (int m = 0; m < static_cast<int>(models.size()); ++m) {
-    const Divided& model = *models[m];
-    if (model.tets.count() == 0) {
-      problem.items.push_back({shell_surface(model.shell), model.shell.volume_mm3, m});
-      continue;
-    }
-    const int first = static_cast<int>(problem.items.size());
-    for (SegmentSurface& segment : part_surfaces(model.tets, model.segments))
-      problem.items.push_back({std::move(segment.surface), segment.volume_mm3, m});
-    for (const SegmentEdge& edge : adjacency(model.tets, model.segments))
-      problem.edges.push_back({edge.a + first, edge.b + first, edge.area_mm2});
-    for (std::vector<int>& round_it : segments_round_cavities(model.tets, model.segments)) {
-      for (int& item : round_it) item += first;
-      problem.enclosures.push_back(std::move(round_it));
-    }
-  }
-  problem.build_mm = room_of(profile).size_mm;
-  problem.gap_mm = profile.pack.gap_mm;
-  problem.grid_mm = profile.pack.grid_mm;
-  problem.rotation_step = radians(profile.pack.rotation_step_deg);
-  problem.support_angle = radians(profile.support_angle_deg);
-  problem.search_grid_mm = profile.pack.search_grid_mm;
-  problem.search_rotation_step = radians(profile.pack.search_rotation_step_deg);
-  problem.cost = packing_cost(profile);
-  problem.tabu_memory = profile.pack.tabu_memory;
-  problem.tabu_patience = profile.pack.tabu_patience;
-  problem.tabu_samples = profile.pack.tabu_samples;
-  problem.budget_s = budget_s;
-  problem.seed = seed;
-  return problem;
-}
-
 // The parts' surfaces after the packer's merges, and the glue between them. `placed` lists the
 // parts of one divided model as indices into packing.parts; results are written into parts by that
 // index.
@@ -158,9 +123,44 @@ double shortfall(const Arrangement& arrangement, const Profile& profile) {
 
 }  // namespace
 
+PackProblem packing_problem(const Models& models, const Profile& profile, std::uint64_t seed,
+                            double budget_s) {
+  PackProblem problem;
+  for (int m = 0; m < static_cast<int>(models.size()); ++m) {
+    const Divided& model = *models[m];
+    if (model.tets.count() == 0) {
+      problem.items.push_back({shell_surface(model.shell), model.shell.volume_mm3, m});
+      continue;
+    }
+    const int first = static_cast<int>(problem.items.size());
+    for (SegmentSurface& segment : part_surfaces(model.tets, model.segments))
+      problem.items.push_back({std::move(segment.surface), segment.volume_mm3, m});
+    for (const SegmentEdge& edge : adjacency(model.tets, model.segments))
+      problem.edges.push_back({edge.a + first, edge.b + first, edge.area_mm2});
+    for (std::vector<int>& round_it : segments_round_cavities(model.tets, model.segments)) {
+      for (int& item : round_it) item += first;
+      problem.enclosures.push_back(std::move(round_it));
+    }
+  }
+  problem.build_mm = room_of(profile).size_mm;
+  problem.gap_mm = profile.pack.gap_mm;
+  problem.grid_mm = profile.pack.grid_mm;
+  problem.rotation_step = radians(profile.pack.rotation_step_deg);
+  problem.support_angle = radians(profile.support_angle_deg);
+  problem.search_grid_mm = profile.pack.search_grid_mm;
+  problem.search_rotation_step = radians(profile.pack.search_rotation_step_deg);
+  problem.cost = packing_cost(profile);
+  problem.tabu_memory = profile.pack.tabu_memory;
+  problem.tabu_patience = profile.pack.tabu_patience;
+  problem.tabu_samples = profile.pack.tabu_samples;
+  problem.budget_s = budget_s;
+  problem.seed = seed;
+  return problem;
+}
+
 Arrangement pack_models(const Models& models, const Profile& profile, std::uint64_t seed,
                         double budget_s, const Progress& progress) {
-  PackProblem problem = problem_of(models, profile, seed, budget_s);
+  PackProblem problem = packing_problem(models, profile, seed, budget_s);
   double missing = 0;
   for (int attempt = 0; attempt < 3; ++attempt) {
     const Packing packing = pack(problem, progress);

@@ -12,6 +12,11 @@
 
 namespace packmerger {
 
+// What the packer is asked: the models' segments, or the whole models, on the profile's tray.
+// models: as below.
+PackProblem packing_problem(const std::vector<std::shared_ptr<const Divided>>& models,
+                            const Profile& profile, std::uint64_t seed, double budget_s);
+
 // models: one per input, in order; copies of one input may share an object. Every promise of the
 // job folder on geometry is checked here on the exact meshes (closed parts, inside the build
 // volume, at least gap_mm apart): what cannot keep it is packed again with more room and, after

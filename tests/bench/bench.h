@@ -8,4 +8,7 @@ namespace packmerger::bench {
 // How much smoothing straightens the cuts of a model, as figures and as a picture.
 void add_cuts(CLI::App& program);
 
+// The paper's packer, simple and slow, on a model's segments.
+void add_reference(CLI::App& program);
+
 }  // namespace packmerger::bench
