@@ -46,6 +46,8 @@ folder = "drop"
 simulated = true
 approve = "ask"
 size_mm = 60
+# a toy is not worth a dozen parts: each is to hold a tenth of it at least
+set = ["min_volume_fraction=0.1"]
 EOF
 packmergerd --config "$demo/packmergerd.toml" 2> "$demo/daemon.log" &
 daemon=$!
