@@ -41,7 +41,7 @@ void Foreman::on(const Prepared& event) {
     job->trays = event.trays;
     job->estimates = event.estimates;
     job->pays = event.pays;
-    job->reason = event.pays ? "" : "another way of printing it is not dearer";
+    job->reason = event.pays ? "" : "packing does not pay";
     store_.save(*job, job->reason);
     say(*job, "ready");
   }
