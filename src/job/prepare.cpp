@@ -48,8 +48,12 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
     job.support_mm3 += measured.support_mm3;
     job.height_mm = std::max(job.height_mm, measured.size_mm.z());
   }
-  job.shell_volume_mm3 = 0;  // of what is printed, which is no shell where the variant is solid
-  for (const JobPart& part : arrangement.parts) job.shell_volume_mm3 += part.volume_mm3;
+  // What is packed was cut from the shell, whose volume checks the cuts; anything else is printed
+  // uncut, and is no shell where the variant is solid.
+  if (job.variant != name_of(Variant::kPacked)) {
+    job.shell_volume_mm3 = 0;
+    for (const JobPart& part : arrangement.parts) job.shell_volume_mm3 += part.volume_mm3;
+  }
   job.final_segments = static_cast<int>(arrangement.parts.size());
   job.parts = std::move(arrangement.parts);
   job.removal_order = std::move(arrangement.removal_order);
