@@ -135,21 +135,30 @@ ReferenceMaps ReferencePacker::draw(const std::vector<TriangleSoup>& surfaces,
   return maps;
 }
 
-TrayMeasure ReferencePacker::measure(const Tray& tray, const ReferenceMaps& maps, double volume_mm3,
-                                     int x, int y, int z, double waste_mm3) const {
-  const Vec3 low(x * problem_.grid_mm, y * problem_.grid_mm, z * unit_mm_);
+double ReferencePacker::waste_mm3(const ReferencePlacement& place) const {
+  return std::max(0, place.waste) * (problem_.grid_mm * problem_.grid_mm * unit_mm_);
+}
+
+Box3 ReferencePacker::contents_with(const Tray& tray, const ReferenceMaps& maps,
+                                    const ReferencePlacement& place) const {
+  const Vec3 low(place.x * problem_.grid_mm, place.y * problem_.grid_mm, place.z * unit_mm_);
   Box3 contents = tray.contents;
   contents.extend(low);
   contents.extend(Vec3(low + maps.box.sizes()));
+  return contents;
+}
+
+TrayMeasure ReferencePacker::measure(const Tray& tray, const ReferenceMaps& maps, double volume_mm3,
+                                     const ReferencePlacement& place) const {
+  const Box3 contents = contents_with(tray, maps, place);
   const Vec3 size = contents.sizes();
-  return {Vec3(size.x(), size.y(), contents.max().z()), tray.support_mm3 + waste_mm3,
+  return {Vec3(size.x(), size.y(), contents.max().z()), tray.support_mm3 + waste_mm3(place),
           tray.material_mm3 + volume_mm3, tray.parts + 1};
 }
 
 std::optional<ReferencePlacement> ReferencePacker::best(const Tray& tray,
                                                         const std::vector<ReferenceMaps>& part,
                                                         double volume_mm3) {
-  const double cell_mm3 = problem_.grid_mm * problem_.grid_mm * unit_mm_;
   const int highest = static_cast<int>(std::floor(problem_.build_mm.z() / unit_mm_ + 1e-6));
   std::optional<ReferencePlacement> best;
   std::vector<Height> z;
@@ -201,9 +210,8 @@ std::optional<ReferencePlacement> ReferencePacker::best(const Tray& tray,
       for (int x = 0; x < columns; ++x) {
         const auto at = static_cast<std::size_t>(y * columns + x);
         if (z[at] + top > highest) continue;
-        const double cost = problem_.cost.evaluate(
-            measure(tray, maps, volume_mm3, x, y, z[at], std::max(0, waste[at]) * cell_mm3));
-        const ReferencePlacement here{0, static_cast<int>(rotation), x, y, z[at], cost};
+        ReferencePlacement here{0, static_cast<int>(rotation), x, y, z[at], waste[at], 0};
+        here.cost = problem_.cost.evaluate(measure(tray, maps, volume_mm3, here));
         const auto rank = [](const ReferencePlacement& p) {
           return std::tuple(p.cost, p.z, p.y, p.x, p.rotation);
         };
@@ -230,20 +238,15 @@ ReferencePacking ReferencePacker::pack(const std::vector<std::vector<ReferenceMa
     }
     place->part = index;
     const ReferenceMaps& maps = part[static_cast<std::size_t>(place->rotation)];
-    int waste = 0;
     for (int dy = 0; dy < maps.height; ++dy)
       for (int dx = 0; dx < maps.width; ++dx) {
         const auto cell = static_cast<std::size_t>(dy * maps.width + dx);
         if (maps.top[cell] == kNothing) continue;
         Height& field = tray.field[tray.index(place->x + dx, place->y + dy)];
-        if (maps.hangs[cell] != 0) waste += place->z + maps.bottom[cell] - std::max<int>(0, field);
         field = std::max(field, static_cast<Height>(place->z + maps.top[cell]));
       }
-    const double waste_mm3 = std::max(0, waste) * problem_.grid_mm * problem_.grid_mm * unit_mm_;
-    const Vec3 low(place->x * problem_.grid_mm, place->y * problem_.grid_mm, place->z * unit_mm_);
-    tray.contents.extend(low);
-    tray.contents.extend(Vec3(low + maps.box.sizes()));
-    tray.support_mm3 += waste_mm3;
+    tray.contents = contents_with(tray, maps, *place);
+    tray.support_mm3 += waste_mm3(*place);
     tray.material_mm3 += volume;
     ++tray.parts;
     packing.cost = place->cost;

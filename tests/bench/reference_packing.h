@@ -37,6 +37,7 @@ struct ReferencePlacement {
   int x = 0;  // cells
   int y = 0;
   int z = 0;        // units
+  int waste = 0;    // units, summed over the cells
   double cost = 0;  // of the tray with the part on it
 };
 
@@ -70,8 +71,12 @@ class ReferencePacker {
   ReferenceMaps draw(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation);
   std::optional<ReferencePlacement> best(const Tray& tray, const std::vector<ReferenceMaps>& part,
                                          double volume_mm3);
-  TrayMeasure measure(const Tray& tray, const ReferenceMaps& maps, double volume_mm3, int x, int y,
-                      int z, double waste_mm3) const;
+  double waste_mm3(const ReferencePlacement& place) const;
+  // The tray's box with the part in it, and the tray's figures.
+  Box3 contents_with(const Tray& tray, const ReferenceMaps& maps,
+                     const ReferencePlacement& place) const;
+  TrayMeasure measure(const Tray& tray, const ReferenceMaps& maps, double volume_mm3,
+                      const ReferencePlacement& place) const;
 
   const PackProblem& problem_;
   double unit_mm_;
