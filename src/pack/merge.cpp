@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 
 namespace packmerger {
@@ -31,6 +32,39 @@ ItemSet merged(const ItemSet& a, const ItemSet& b) {
   ItemSet all;
   std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
   return all;
+}
+
+std::pair<ItemSet, ItemSet> divided(const ItemSet& items, const PackProblem& problem,
+                                    Random& random) {
+  std::vector<int> shuffled = items;
+  random.shuffle(shuffled);
+  std::map<int, int> half;  // item → 0 or 1
+  half[shuffled[0]] = 0;
+  half[shuffled[1]] = 1;
+  const auto belongs = [&items](int item) {
+    return std::binary_search(items.begin(), items.end(), item);
+  };
+  // Edges are looked at in random order until none joins an item to a half.
+  std::vector<std::pair<int, int>> edges;
+  for (const SegmentEdge& edge : problem.edges)
+    if (belongs(edge.a) && belongs(edge.b)) edges.emplace_back(edge.a, edge.b);
+  random.shuffle(edges);
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (const auto& [a, b] : edges) {
+      if (half.contains(a) == half.contains(b)) continue;
+      const int from = half.contains(a) ? a : b;
+      const int to = half.contains(a) ? b : a;
+      half[to] = half[from];
+      grew = true;
+    }
+  }
+  std::pair<ItemSet, ItemSet> halves;
+  for (const int item : items) {
+    const auto known = half.find(item);
+    (known != half.end() && known->second == 1 ? halves.second : halves.first).push_back(item);
+  }
+  return halves;
 }
 
 }  // namespace packmerger

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/random.h"
 #include "model/packing.h"
 
 namespace packmerger {
@@ -17,5 +18,10 @@ std::vector<std::pair<int, int>> mergeable_pairs(const std::vector<ItemSet>& par
                                                  const PackProblem& problem);
 
 ItemSet merged(const ItemSet& a, const ItemSet& b);
+
+// Two parts that together are the given one of several items, each connected by the graph where the
+// given one is: two random items are the seeds that the halves grow from.
+std::pair<ItemSet, ItemSet> divided(const ItemSet& items, const PackProblem& problem,
+                                    Random& random);
 
 }  // namespace packmerger

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 #include "base/parallel.h"
 #include "pack/columns.h"
 #include "pack/exact_gap.h"
-#include "pack/fill.h"
+#include "pack/refine.h"
 #include "pack/search.h"
 
 namespace packmerger {
@@ -17,15 +18,10 @@ namespace {
 
 constexpr double kGapTolerance_mm = 1e-6;
 constexpr int kRepairs = 6;
-constexpr std::size_t kPlacedConfigurations = 3;  // of the search's best, packed with all turns
-constexpr int kPlaceCandidates = 32;
-
-// One way to come to an answer, so that it can be repeated with more room between the parts.
-struct Plan {
-  std::vector<ItemSet> parts;
-  Order order;
-  Effort effort = Effort::kSearch;
-};
+constexpr double kFinestShare = 0.25;     // of grid_mm: the grid of the last refinement
+constexpr int kFinestPasses = 3;
+constexpr double kAboutEqual = 1.005;     // costs: the layout of fewest parts is taken
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_settings(const PackProblem& problem) {
   const auto refuse = [](const std::string& what, const char* hint) {
@@ -99,57 +95,75 @@ void measure(const PackProblem& problem, Packing& packing) {
   }
 }
 
+// Stands in the tray's corner.
+Pose corner_pose(const PackProblem& problem, const Part& part) {
+  const WayUp& way = part.ways.front();
+  PlacedPart placed{part.items, Pose::Identity(), 0};
+  placed.pose.linear() = turn_about_z(way.turn) * way.base;
+  placed.pose.translation() = -bounding_box(placed_mesh(problem, placed)).min();
+  return placed.pose;
+}
+
 // Parts come tray by tray, each tray's in the order they were dropped; lifting them in the reverse
 // order, nothing lies above the part that is next.
-Packing packing_of(const Filling& filling, const Filler& filler, const std::vector<Part>& parts,
-                   const PackProblem& problem) {
+Packing packing_of(const Layout& layout, const PartMaker& maker, const PackProblem& problem) {
   Packing packing;
-  for (const Placement& placement : filling.placed)
-    packing.parts.push_back({parts[static_cast<std::size_t>(placement.part)].items,
-                             filler.pose(placement), placement.tray});
-  std::stable_sort(packing.parts.begin(), packing.parts.end(),
-                   [](const PlacedPart& a, const PlacedPart& b) { return a.tray < b.tray; });
-  for (PlacedPart& part : packing.parts) keep_inside(part, problem);
+  for (std::size_t tray = 0; tray < layout.trays.size(); ++tray)
+    for (const Placed& placed : layout.trays[tray]->placed) {
+      const Pose pose = placed.off_grid
+                            ? corner_pose(problem, *placed.part)
+                            : maker.pose(*placed.rotated, placed.x, placed.y, placed.z);
+      packing.parts.push_back({placed.part->items, pose, static_cast<int>(tray)});
+      keep_inside(packing.parts.back(), problem);
+    }
   packing.removal_order.resize(packing.parts.size());
   std::iota(packing.removal_order.rbegin(), packing.removal_order.rend(), 0);
   measure(problem, packing);
   return packing;
 }
 
-Packing carried_out(const Plan& plan, const PackProblem& problem, PartMaker& maker, Pace& pace) {
-  std::vector<Part> parts = make_parts(plan.parts, maker, problem, pace);
-  if (plan.effort != Effort::kSearch)
-    parallel_for(parts.size(), [&](std::size_t i) {
-      pace.tick();
-      parts[i] = maker.with(std::move(parts[i]), plan.effort);
-    });
-  Filler filler(problem, maker, parts);
-  if (plan.effort == Effort::kPlace) filler.set_candidates(kPlaceCandidates);
-  if (plan.effort == Effort::kAlone) filler.set_on_plate_only();
-  Filling filling;
-  for (const int part : plan.order) {
-    pace.tick();
-    filler.add(filling, part);
-  }
-  return packing_of(filling, filler, parts, problem);
+TraySpec tray_spec(const PackProblem& problem, double cell_mm, double margin_mm) {
+  return {problem.build_mm,
+          {cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm + margin_mm},
+          &problem.cost};
 }
 
-// The search's best few configurations, packed as they were found and with all turns; and every
-// part alone on the plate, the best way up, side by side, which the answer must not be worse than.
-std::vector<Plan> plans(std::vector<Configuration> configurations) {
-  const Configuration unmerged = configurations.front();
-  std::stable_sort(configurations.begin(), configurations.end(),
-                   [](const Configuration& a, const Configuration& b) { return a.cost < b.cost; });
-  configurations.resize(std::min(configurations.size(), kPlacedConfigurations));
-  std::vector<Plan> result;
-  result.push_back({unmerged.parts, unmerged.order, Effort::kAlone});
-  if (configurations[0].parts != unmerged.parts)
-    result.push_back({configurations[0].parts, configurations[0].order, Effort::kAlone});
-  for (const Configuration& configuration : configurations) {
-    result.push_back({configuration.parts, configuration.order, Effort::kSearch});
-    result.push_back({configuration.parts, configuration.order, Effort::kPlace});
+// A maker and the trays of one grid.
+struct Workshop {
+  Workshop(const PackProblem& problem, double cell_mm, double margin_mm, Pace& pace)
+      : spec(tray_spec(problem, cell_mm, margin_mm)),
+        maker(problem, spec.grid, [&pace] { pace.tick(); }),
+        layouter(spec) {}
+
+  TraySpec spec;
+  PartMaker maker;
+  Layouter layouter;
+};
+
+// Each part alone on the plate, the best way up, side by side.
+Layout side_by_side(const PackProblem& problem, Workshop& workshop) {
+  Random unused(0);
+  Moves moves(problem, workshop.maker);
+  const RotationChoice best_alone = [&moves](const Part& part) {
+    return moves.good_rotations(part, 1);
+  };
+  return *workshop.layouter.carried_out(moves.start(true, unused), best_alone, kInfinity, true);
+}
+
+// What the search found on its grid, taken over to the answer's grid and to the finest.
+Packing finished(const PackProblem& problem, const Layout& found, const Grid& grid,
+                 double margin_mm, Pace& pace) {
+  Workshop placing(problem, problem.grid_mm, margin_mm, pace);
+  Layout layout = refined(found, grid, placing.layouter, placing.maker, grid.cell_mm);
+  Workshop finest(problem, problem.grid_mm * kFinestShare, margin_mm, pace);
+  layout = refined(layout, placing.spec.grid, finest.layouter, finest.maker, problem.grid_mm);
+  for (int pass = 1; pass < kFinestPasses; ++pass) {
+    Layout again = refined(layout, finest.spec.grid, finest.layouter, finest.maker,
+                           problem.grid_mm / 2);
+    if (again.cost >= layout.cost) break;
+    layout = std::move(again);
   }
-  return result;
+  return packing_of(layout, finest.maker, problem);
 }
 
 double least_gap_mm(const Packing& packing, const PackProblem& problem) {
@@ -163,20 +177,38 @@ double least_gap_mm(const Packing& packing, const PackProblem& problem) {
   return least;
 }
 
-// The maps bound the meshes, so this finds nothing to do but where the z-buffer's sampling lost
-// more than was allowed for; then the plan is carried out again with that much more room.
-Packing with_gaps_kept(const Plan& plan, Packing packing, const PackProblem& problem, Pace& pace) {
+// The maps bound the meshes, so this finds nothing to do but where rounding lost more than was
+// allowed for; then the layout is finished again with that much more room.
+Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
+                       const PackProblem& problem, Pace& pace) {
   double margin = 0;
   for (int repair = 0; repair < kRepairs; ++repair) {
     const double missing = problem.gap_mm - least_gap_mm(packing, problem);
     if (missing <= kGapTolerance_mm) return packing;
     margin += 1.5 * missing + 0.01;
-    PartMaker roomier(problem, margin, [&pace] { pace.tick(); });
-    packing = carried_out(plan, problem, roomier, pace);
+    packing = finished(problem, layout, grid, margin, pace);
   }
   throw Error(Fault::kInternal,
               fmt::format("The parts could not be kept {} mm apart", problem.gap_mm),
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
+}
+
+[[noreturn]] void refuse(const PackItem& item, std::size_t number, const PackProblem& problem) {
+  const Vec3 size = bounding_box(item.surface).sizes();
+  const Vec3& build = problem.build_mm;
+  throw Error(
+      Fault::kBadInput,
+      fmt::format("Part {} of model {} measures {:.1f} × {:.1f} × {:.1f} mm and fits the "
+                  "build volume of {:.1f} × {:.1f} × {:.1f} mm in no rotation",
+                  number, item.model + 1, size.x(), size.y(), size.z(), build.x(), build.y(),
+                  build.z()),
+      "Scale the model down, let it be divided into more parts, or choose a larger printer.");
+}
+
+void make_items(const PackProblem& problem, PartMaker& maker) {
+  parallel_for(problem.items.size(), [&](std::size_t i) {
+    if (!maker.make({static_cast<int>(i)})) refuse(problem.items[i], i + 1, problem);
+  });
 }
 
 }  // namespace
@@ -184,19 +216,26 @@ Packing with_gaps_kept(const Plan& plan, Packing packing, const PackProblem& pro
 Packing pack(const PackProblem& problem, const Progress& progress) {
   check_settings(problem);
   Pace pace(progress, problem.budget_s);
-  PartMaker maker(problem, 0, [&pace] { pace.tick(); });
-  const std::vector<Plan> ways = plans(search(problem, maker, pace));
-  const Plan* best_plan = nullptr;
-  Packing best;
-  for (const Plan& plan : ways) {
-    if (best_plan != nullptr && plan.effort == Effort::kPlace && pace.time_is_up()) continue;
-    Packing packing = carried_out(plan, problem, maker, pace);
-    if (best_plan != nullptr && packing.cost >= best.cost) continue;
-    best = std::move(packing);
-    best_plan = &plan;
+  Workshop searching(problem, std::max(problem.search_grid_mm, problem.grid_mm), 0, pace);
+  make_items(problem, searching.maker);
+  std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
+  layouts.push_back(side_by_side(problem, searching));
+
+  std::vector<Packing> packings(layouts.size());
+  for (std::size_t i = 0; i < layouts.size(); ++i) {
+    packings[i] = finished(problem, layouts[i], searching.spec.grid, 0, pace);
+    pace.reached(0.8 + 0.15 * static_cast<double>(i + 1) / static_cast<double>(layouts.size()));
   }
-  pace.reached(0.97);
-  best = with_gaps_kept(*best_plan, std::move(best), problem, pace);
+  const auto cheapest = std::min_element(
+      packings.begin(), packings.end(),
+      [](const Packing& a, const Packing& b) { return a.cost < b.cost; });
+  std::size_t chosen = static_cast<std::size_t>(cheapest - packings.begin());
+  const double limit = std::min(kAboutEqual * cheapest->cost, packings.back().cost);
+  for (std::size_t i = 0; i < packings.size(); ++i)
+    if (packings[i].cost <= limit && packings[i].parts.size() < packings[chosen].parts.size())
+      chosen = i;
+  Packing best = with_gaps_kept(layouts[chosen], searching.spec.grid, std::move(packings[chosen]),
+                                problem, pace);
   progress.report("packing", 1);
   return best;
 }

@@ -1,41 +1,51 @@
-// The placement kernel (paper, section 6.1): where, and turned how, one part adds least to the cost
+// The placement of one part (paper, section 6.1): where, and turned how, it adds least to the cost
 // of a tray when it is dropped on what is there.
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <span>
 
-#include "model/packing.h"
-#include "pack/height_field.h"
-#include "pack/part.h"
+#include "pack/tray_state.h"
 
 namespace packmerger {
 
+// Positions along one axis, cells.
+struct Range {
+  int first = 0;
+  int last = -1;
+  bool empty() const { return last < first; }
+  int count() const { return last - first + 1; }
+};
+
+inline constexpr Range kAnywhere{std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
+
+Range intersection(const Range& a, const Range& b);
+
 struct PlaceRules {
-  Vec3 build_mm = Vec3::Zero();
-  double grid_mm = 1;
-  const Cost* cost = nullptr;
-  int candidates = 12;         // coarse positions that are looked at closely
-  bool on_plate_only = false;  // nothing may lie on or over anything
-  bool thorough = true;        // looks everywhere before it gives a tray up
+  bool on_plate_only = false;  // every part stands on the plate
+  Range x = kAnywhere;         // looked at
+  Range y = kAnywhere;
 };
 
 struct Spot {
-  int rotation = 0;  // index into Part::rotations
-  int x = 0;         // cells of the fine grid
+  int rotation = 0;  // index into the rotations given
+  int x = 0;         // cells
   int y = 0;
-  double z = 0;            // mm
+  Height z = 0;            // units
   double cost = 0;         // Cost::evaluate of the tray with the part on it
   double support_mm3 = 0;  // what the part adds
 };
 
-// Positions are first rated on the coarse grid, for all rotations; the best of them are then looked
-// at closely: all positions of the fine grid round them, with exact heights of the maps. Of equal
-// costs the lowest z wins, then the least y, x and rotation, so the answer is always the same one.
-// Positions further from the contents than touching cannot be better and are left out.
-// Empty where the part has no place on this tray.
-std::optional<Spot> best_spot(const TrayState& tray, const Part& part, const PlaceRules& rules);
+// Positions at which the part lies within the tray, along axis 0 or 1.
+Range inside_tray(const RotatedPart& part, const TraySpec& spec, int axis);
 
-// Puts the part there.
-void put(TrayState& tray, const Part& part, const Spot& spot, double grid_mm);
+// The cheapest of all positions in all rotations. Of equal costs the lowest z wins, then the least
+// y, x and rotation, so the answer is always the same one. What is skipped is skipped for a proven
+// reason only: a bound of its cost exceeds the best so far. Empty where the part has no place on
+// this tray.
+std::optional<Spot> best_spot(const TrayState& tray,
+                              std::span<const RotatedPart* const> rotations, double volume_mm3,
+                              const TraySpec& spec, const PlaceRules& rules = {});
 
 }  // namespace packmerger

@@ -1,5 +1,5 @@
-// The search of the paper's section 6: orders by tabu search, then a merge along a random edge, and
-// again, until nothing can be merged.
+// The search for a cheap layout: tabu search (paper, section 6.2) over moves that change order,
+// place, rotation and division together.
 #pragma once
 
 #include <chrono>
@@ -8,9 +8,8 @@
 
 #include "base/progress.h"
 #include "model/packing.h"
-#include "pack/merge.h"
-#include "pack/order.h"
-#include "pack/part.h"
+#include "pack/layout.h"
+#include "pack/moves.h"
 
 namespace packmerger {
 
@@ -25,32 +24,27 @@ class Pace {
   void reached(double fraction);
   // To be called often: reports from time to time, and throws when cancellation was asked for.
   void tick();
-  bool time_is_up() const;
+  // The share of the budget that has passed, 0 without one; 1: time is up.
+  double passed() const;
 
  private:
   using Clock = std::chrono::steady_clock;
 
   const Progress& progress_;
-  Clock::time_point end_;
+  double budget_s_;
+  Clock::time_point start_;
   std::mutex mutex_;
   Clock::time_point reported_;
   double fraction_ = 0;
 };
 
-// A division into parts and the best order found for it.
-struct Configuration {
-  std::vector<ItemSet> parts;
-  Order order;      // of indices into parts
-  double cost = 0;  // as the search measures it
-};
-
-// Parts for item sets, made in parallel. Throws Error{kBadInput} naming a part that fits the build
-// volume in no rotation.
-std::vector<Part> make_parts(const std::vector<ItemSet>& sets, PartMaker& maker,
-                             const PackProblem& problem, Pace& pace);
-
-// All configurations the search went through, the unmerged one first. Deterministic unless the
-// budget ends it.
-std::vector<Configuration> search(const PackProblem& problem, PartMaker& maker, Pace& pace);
+// Good layouts, cheapest first: the cheapest found for each number of parts, none more than a few
+// per cent dearer than the first. Each round draws problem.tabu_samples moves that touch no part
+// moved in the last problem.tabu_memory rounds, carries all of them out, in parallel, and goes on
+// from the cheapest, better or not. After problem.tabu_patience rounds without a better layout the
+// search is kicked away from the best one; it ends after some kicks without a better one, or with
+// the budget. Without a budget the same seed gives the same answer on any number of threads.
+std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
+                           Pace& pace);
 
 }  // namespace packmerger

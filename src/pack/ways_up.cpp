@@ -6,29 +6,13 @@
 #include <numbers>
 
 #include "base/random.h"
-#include "pack/columns.h"
 
 namespace packmerger {
 namespace {
 
 constexpr double kFitTolerance_mm = 1e-9;
-constexpr int kColumnsAcross = 64;  // enough to rank; the placement measures again
 constexpr int kFitSamples = 3000;
 constexpr int kFitRefinements = 400;
-
-std::vector<TriangleSoup> turned(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation) {
-  std::vector<TriangleSoup> result = surfaces;
-  for (TriangleSoup& surface : result)
-    for (Vec3& point : surface.points) point = rotation * point;
-  return result;
-}
-
-Box3 box_of(const std::vector<TriangleSoup>& surfaces) {
-  Box3 box;
-  for (const TriangleSoup& surface : surfaces)
-    for (const Vec3& point : surface.points) box.extend(point);
-  return box;
-}
 
 // Sizes after turns about z, without copying the surfaces.
 Vec3 size_turned(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation) {
@@ -36,17 +20,6 @@ Vec3 size_turned(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation
   for (const TriangleSoup& surface : surfaces)
     for (const Vec3& point : surface.points) box.extend(rotation * point);
   return box.sizes();
-}
-
-WayUp measured(const std::vector<TriangleSoup>& surfaces, const Mat3& base, double turn,
-               double volume_mm3, const PackProblem& problem) {
-  const std::vector<TriangleSoup> standing = turned(surfaces, turn_about_z(turn) * base);
-  const Box3 box = box_of(standing);
-  const double step = std::max(problem.grid_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
-  const ColumnSupport support =
-      column_support(standing, step, problem.support_angle, box.min().z());
-  const TrayMeasure alone{box.sizes(), support.below + support.inside, volume_mm3, 1};
-  return {base, turn, problem.cost.evaluate(alone), alone.support_mm3, support.inside};
 }
 
 // How far a size exceeds the build volume, in the worst direction; negative: room left.
@@ -75,33 +48,24 @@ bool fits(const Vec3& size_mm, const Vec3& build_mm) {
   return excess(size_mm, build_mm) <= kFitTolerance_mm;
 }
 
-std::vector<WayUp> ranked_ways_up(const std::vector<TriangleSoup>& surfaces, double volume_mm3,
-                                  const RotationSet& rotations, const PackProblem& problem,
-                                  const std::function<void()>& tick) {
-  std::vector<WayUp> ways;
-  for (const Mat3& way : rotations.ways_up) {
-    tick();
-    // Support hardly depends on the turn; the box does, so the cheapest box decides the turn.
-    double best_cost = 0;
-    std::optional<double> best;
-    for (const double turn : rotations.turns) {
-      const Vec3 size = size_turned(surfaces, turn_about_z(turn) * way);
-      if (!fits(size, problem.build_mm)) continue;
-      const double cost = problem.cost.evaluate({size, 0, volume_mm3, 1});
-      if (!best || cost < best_cost - 1e-9 * std::abs(best_cost)) {
-        best_cost = cost;
-        best = turn;
-      }
-    }
-    if (best) ways.push_back(measured(surfaces, way, *best, volume_mm3, problem));
+std::optional<Turn> best_turn(const std::vector<TriangleSoup>& surfaces, const Mat3& base,
+                              const std::vector<double>& turns, const PackProblem& problem) {
+  // Support hardly depends on the turn; the box does, so the cheapest box decides.
+  std::optional<Turn> best;
+  double least = 0;
+  for (const double turn : turns) {
+    const Vec3 size = size_turned(surfaces, turn_about_z(turn) * base);
+    if (!fits(size, problem.build_mm)) continue;
+    const double cost = problem.cost.evaluate({size, 0, 0, 1});
+    if (best && cost >= least - 1e-9 * std::abs(least)) continue;
+    least = cost;
+    best = Turn{turn, size};
   }
-  std::stable_sort(ways.begin(), ways.end(),
-                   [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
-  return ways;
+  return best;
 }
 
-std::optional<WayUp> way_up_that_fits(const std::vector<TriangleSoup>& surfaces, double volume_mm3,
-                                      const PackProblem& problem) {
+std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surfaces,
+                                           const PackProblem& problem) {
   Random random(0);  // of no consequence for the packing's own seed
   Mat3 best = Mat3::Identity();
   double least = std::numeric_limits<double>::infinity();
@@ -115,7 +79,7 @@ std::optional<WayUp> way_up_that_fits(const std::vector<TriangleSoup>& surfaces,
   for (int i = 0; i < kFitRefinements; ++i)
     consider(nudged(best, 0.3 * (1 - static_cast<double>(i) / kFitRefinements), random));
   if (least > kFitTolerance_mm) return std::nullopt;
-  return measured(surfaces, best, 0, volume_mm3, problem);
+  return FittingWay{best, size_turned(surfaces, best)};
 }
 
 }  // namespace packmerger

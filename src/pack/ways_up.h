@@ -1,8 +1,6 @@
-// Which ways up are worth trying for a part: all those of a rotation set, ranked by what the part
-// would cost alone on a tray.
+// Which ways up a part can stand, and turned how.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -18,19 +16,28 @@ struct WayUp {
   double cost = 0;                // Cost::evaluate of the part alone on the plate
   double support_mm3 = 0;         // V_s of the part alone
   double inside_support_mm3 = 0;  // V_s between the part's own surfaces
+  Vec3 size_mm = Vec3::Zero();    // of the part standing so
 };
 
-// The ways up in which the surfaces together fit the build volume, each in its cheapest turn,
-// cheapest first. Empty where none fits. tick
-// is called once for each way.
-std::vector<WayUp> ranked_ways_up(const std::vector<TriangleSoup>& surfaces, double volume_mm3,
-                                  const RotationSet& rotations, const PackProblem& problem,
-                                  const std::function<void()>& tick);
+struct Turn {
+  double turn = 0;  // radians
+  Vec3 size_mm = Vec3::Zero();
+};
+
+// The turn about the vertical in which the surfaces together, standing as base says, fit the build
+// volume at the least cost of their box; of equal ones the first. Empty where none fits.
+std::optional<Turn> best_turn(const std::vector<TriangleSoup>& surfaces, const Mat3& base,
+                              const std::vector<double>& turns, const PackProblem& problem);
+
+struct FittingWay {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 size_mm = Vec3::Zero();
+};
 
 // A rotation found by sampling and refining in which the surfaces fit the build volume although no
 // rotation of the set did; empty where none was found.
-std::optional<WayUp> way_up_that_fits(const std::vector<TriangleSoup>& surfaces, double volume_mm3,
-                                      const PackProblem& problem);
+std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surfaces,
+                                           const PackProblem& problem);
 
 // Whether a box fits the build volume, to within rounding.
 bool fits(const Vec3& size_mm, const Vec3& build_mm);

@@ -1,0 +1,201 @@
+#include "pack/part_maker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "base/error.h"
+#include "pack/columns.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kMostCellsFromCentre = 30000;  // HeightCell counts them in 16 bits
+constexpr int kColumnsAcross = 64;              // enough to rank ways up
+
+std::array<std::int64_t, 9> key_of(const Mat3& rotation) {
+  std::array<std::int64_t, 9> key{};
+  for (int i = 0; i < 9; ++i)
+    key[static_cast<std::size_t>(i)] = std::llround(rotation(i / 3, i % 3) * 1e9);
+  return key;
+}
+
+TriangleSoup turned(TriangleSoup surface, const Mat3& rotation) {
+  for (Vec3& point : surface.points) point = rotation * point;
+  return surface;
+}
+
+}  // namespace
+
+PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function<void()> tick)
+    : problem_(problem),
+      grid_(grid),
+      tick_(std::move(tick)),
+      rotation_set_(rotation_set(problem.rotation_step)) {
+  std::vector<Box3> boxes;
+  for (const PackItem& item : problem.items) {
+    const std::size_t model = static_cast<std::size_t>(item.model);
+    if (boxes.size() <= model) boxes.resize(model + 1);
+    boxes[model].extend(bounding_box(item.surface));
+  }
+  for (const Box3& box : boxes) centres_.push_back(box.isEmpty() ? Vec3(0, 0, 0) : box.center());
+
+  std::map<std::vector<double>, int> known;
+  for (std::size_t i = 0; i < problem.items.size(); ++i) {
+    Shape shape{to_soup(problem.items[i].surface), 0};
+    std::vector<double> look;
+    for (Vec3& point : shape.surface.points) {
+      point -= centres_[static_cast<std::size_t>(problem.items[i].model)];
+      if (point.norm() / grid_.cell_mm > kMostCellsFromCentre)
+        throw Error(Fault::kUsage, "The packer's grid is too fine for a model of this size",
+                    "Set a larger grid_mm.");
+      look.insert(look.end(), {point.x(), point.y(), point.z()});
+    }
+    for (const auto& [a, b, c] : shape.surface.triangles)
+      look.insert(look.end(),
+                  {static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)});
+    shape.twin = known.emplace(std::move(look), static_cast<int>(i)).first->second;
+    shapes_.push_back(std::move(shape));
+  }
+}
+
+std::vector<TriangleSoup> PartMaker::surfaces(const ItemSet& items) const {
+  std::vector<TriangleSoup> result;
+  for (const int item : items) result.push_back(shapes_[static_cast<std::size_t>(item)].surface);
+  return result;
+}
+
+std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation, bool keep) {
+  const std::pair key(twin, key_of(rotation));
+  if (keep) {
+    const std::lock_guard lock(mutex_);
+    const auto found = maps_.find(key);
+    if (found != maps_.end()) return found->second;
+  }
+  auto drawn = std::make_shared<const DepthMaps>(
+      draw_depth_maps(turned(shapes_[static_cast<std::size_t>(twin)].surface, rotation),
+                      grid_.cell_mm, problem_.support_angle));
+  if (!keep) return drawn;
+  const std::lock_guard lock(mutex_);
+  return maps_.emplace(key, std::move(drawn)).first->second;
+}
+
+DepthMaps PartMaker::part_maps(const ItemSet& items, const Mat3& rotation, bool keep) {
+  std::vector<std::shared_ptr<const DepthMaps>> held;
+  std::vector<const DepthMaps*> members;
+  for (const int item : items) {
+    held.push_back(maps(shapes_[static_cast<std::size_t>(item)].twin, rotation, keep));
+    members.push_back(held.back().get());
+  }
+  return united_maps(members);
+}
+
+const Part* PartMaker::make(const ItemSet& items) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = parts_.find(items);
+    if (found != parts_.end()) return found->second->ways.empty() ? nullptr : found->second.get();
+  }
+  auto part = std::make_unique<Part>();
+  part->items = items;
+  part->model = problem_.items[static_cast<std::size_t>(items.front())].model;
+  for (const int item : items)
+    part->volume_mm3 += problem_.items[static_cast<std::size_t>(item)].volume_mm3;
+  part->ways = ways_of(*part);
+  const std::lock_guard lock(mutex_);
+  const Part* made = parts_.emplace(items, std::move(part)).first->second.get();
+  return made->ways.empty() ? nullptr : made;
+}
+
+std::vector<WayUp> PartMaker::ways_of(const Part& part) {
+  const std::vector<TriangleSoup> shapes = surfaces(part.items);
+  std::vector<WayUp> ways;
+  for (const Mat3& base : rotation_set_.ways_up) {
+    tick_();
+    const auto turn = best_turn(shapes, base, rotation_set_.turns, problem_);
+    if (turn) ways.push_back(measured(part, base, turn->turn, turn->size_mm));
+  }
+  if (ways.empty()) {
+    const auto found = way_up_that_fits(shapes, problem_);
+    if (found) ways.push_back(measured(part, found->rotation, 0, found->size_mm));
+  }
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
+  return ways;
+}
+
+WayUp PartMaker::measured(const Part& part, const Mat3& base, double turn, const Vec3& size_mm) {
+  WayUp way{base, turn, 0, 0, 0, size_mm};
+  if (problem_.support_angle <= 0) {
+    // V_s = (volume under the upper envelope) - (volume of matter), whatever lies inside.
+    const DepthMaps maps = part_maps(part.items, base, true);
+    const double lowest = maps.box.min().z();
+    double envelope = 0;
+    double below = 0;
+    for (std::size_t at = 0; at < maps.roof.size(); ++at) {
+      if (maps.roof[at] == kNothingBelow) continue;
+      envelope += maps.roof[at] - lowest;
+      below += maps.bottom[at] - lowest;
+    }
+    const double cell = grid_.cell_mm * grid_.cell_mm;
+    way.support_mm3 = std::max(below * cell, envelope * cell - part.volume_mm3);
+    way.inside_support_mm3 = way.support_mm3 - below * cell;
+  } else {
+    std::vector<TriangleSoup> standing = surfaces(part.items);
+    Box3 box;
+    for (TriangleSoup& surface : standing) {
+      surface = turned(std::move(surface), base);
+      for (const Vec3& point : surface.points) box.extend(point);
+    }
+    const double step =
+        std::max(grid_.cell_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
+    const ColumnSupport support =
+        column_support(standing, step, problem_.support_angle, box.min().z());
+    way.support_mm3 = support.below + support.inside;
+    way.inside_support_mm3 = support.inside;
+  }
+  way.cost = problem_.cost.evaluate({size_mm, way.support_mm3, part.volume_mm3, 1});
+  return way;
+}
+
+const RotatedPart* PartMaker::rotated(const Part& part, std::size_t way, std::size_t turn) {
+  const WayUp& base = part.ways[way];
+  return rotated(part, turn_about_z(base.turn + rotation_set_.turns[turn]) * base.base,
+                 base.inside_support_mm3);
+}
+
+const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& rotation,
+                                      double inside_support_mm3) {
+  const std::pair key(part.items, key_of(rotation));
+  const auto usable = [](const std::unique_ptr<RotatedPart>& made) {
+    return made->top.empty() ? nullptr : made.get();
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = rotated_.find(key);
+    if (found != rotated_.end()) return usable(found->second);
+  }
+  tick_();
+  const DepthMaps maps = part_maps(part.items, rotation, part.items.size() > 1);
+  auto made = std::make_unique<RotatedPart>();
+  if (fits(maps.box.sizes(), problem_.build_mm)) {
+    *made = quantised(maps, grid_);
+    made->rotation = rotation;
+    made->shift = Vec3(-maps.x0 * grid_.cell_mm, -maps.y0 * grid_.cell_mm, -maps.box.min().z()) -
+                  rotation * centres_[static_cast<std::size_t>(part.model)];
+    made->inside_support_mm3 = inside_support_mm3;
+  }
+  const std::lock_guard lock(mutex_);
+  return usable(rotated_.emplace(key, std::move(made)).first->second);
+}
+
+Pose PartMaker::pose(const RotatedPart& rotated, int x, int y, Height z) const {
+  Pose pose = Pose::Identity();
+  pose.linear() = rotated.rotation;
+  pose.translation() =
+      rotated.shift + Vec3(x * grid_.cell_mm, y * grid_.cell_mm, z * grid_.unit_mm);
+  return pose;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,71 @@
+#include "pack/refine.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace packmerger {
+namespace {
+
+// The cells of `to` in which the part's corner lies within reach_mm of where it was.
+Range window(int cell, double shift_from_mm, double shift_to_mm, double from_cell_mm,
+             double to_cell_mm, double reach_mm) {
+  // Both shifts place the same rotated model: the same place has equal cell · cell_mm + shift.
+  const double at = (cell * from_cell_mm + shift_from_mm - shift_to_mm) / to_cell_mm;
+  const double reach = reach_mm / to_cell_mm;
+  return {static_cast<int>(std::lround(at - reach)), static_cast<int>(std::lround(at + reach))};
+}
+
+Draft drafted(const Layout& layout, const Grid& from, const Grid& to, PartMaker& maker,
+              double reach_mm) {
+  Draft draft;
+  for (const auto& tray : layout.trays) {
+    Draft::Tray wanted;
+    for (const Placed& placed : tray->placed) {
+      const RotatedPart* was = placed.rotated;
+      const RotatedPart* now =
+          was ? maker.rotated(*placed.part, was->rotation, was->inside_support_mm3) : nullptr;
+      if (!now) {
+        wanted.tasks.push_back({placed.part});
+        continue;
+      }
+      wanted.tasks.push_back({placed.part, now,
+                              window(placed.x, was->shift.x(), now->shift.x(), from.cell_mm,
+                                     to.cell_mm, reach_mm),
+                              window(placed.y, was->shift.y(), now->shift.y(), from.cell_mm,
+                                     to.cell_mm, reach_mm)});
+    }
+    draft.trays.push_back(std::move(wanted));
+  }
+  return draft;
+}
+
+}  // namespace
+
+Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartMaker& maker,
+               double reach_mm) {
+  std::map<const Part*, const RotatedPart*> rotation_of;
+  for (const auto& tray : layout.trays)
+    for (const Placed& placed : tray->placed)
+      if (placed.rotated)
+        rotation_of[placed.part] = maker.rotated(*placed.part, placed.rotated->rotation,
+                                                 placed.rotated->inside_support_mm3);
+  const RotationChoice the_same = [&](const Part& part) {
+    const auto found = rotation_of.find(&part);
+    return found == rotation_of.end() || found->second == nullptr
+               ? std::vector<const RotatedPart*>{}
+               : std::vector{found->second};
+  };
+  const std::array<double, 2> reaches{0, reach_mm};
+  std::array<Layout, 2> layouts;
+  parallel_for(reaches.size(), [&](std::size_t i) {
+    layouts[i] = *to.carried_out(
+        drafted(layout, from, to.spec().grid, maker, reaches[i]), the_same,
+        std::numeric_limits<double>::infinity());
+  });
+  return layouts[1].cost < layouts[0].cost ? layouts[1] : layouts[0];
+}
+
+}  // namespace packmerger

@@ -1,0 +1,14 @@
+// A layout taken over to a finer grid, where parts move closer to one another.
+#pragma once
+
+#include "pack/layout.h"
+
+namespace packmerger {
+
+// Every part is dropped again on `to`'s grid, in its order and rotation: at the place it had, or at
+// the cheapest place within reach_mm of it along x and y, whichever layout is cheaper.
+// `from` is the grid of the given layout.
+Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartMaker& maker,
+               double reach_mm);
+
+}  // namespace packmerger

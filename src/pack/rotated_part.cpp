@@ -1,0 +1,106 @@
+#include "pack/rotated_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace packmerger {
+namespace {
+
+constexpr double kFinestUnit_mm = 1.0 / 64;
+constexpr double kMostUnits = 16000;  // sums of two stay in 16 bits
+constexpr float kSlack_units = 4e-3F;      // what single precision may lose of a height
+constexpr double kRounding_units = 1e-6;
+
+Height rounded_down(float units) { return static_cast<Height>(std::floor(units)); }
+Height rounded_up(float units) { return static_cast<Height>(std::ceil(units)); }
+Height rounded(float units) { return static_cast<Height>(std::lround(units)); }
+
+HeightCell cell(int x, int y, Height value) {
+  return {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), value};
+}
+
+// Least horizontal distance between the points of two cells that lie `cells` apart on one axis.
+double apart(int cells, double cell_mm) { return std::max(0, std::abs(cells) - 1) * cell_mm; }
+
+// The lower bound of the part grown by a ball of radius gap_mm, so that matter dropped on it keeps
+// its distance in every direction: over a cell at horizontal distance d the part reaches
+// sqrt(gap² - d²) further down. In units, kNothingAbove where empty.
+std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth, float lowest) {
+  const int width = maps.width + 2 * growth;
+  const int height = maps.height + 2 * growth;
+  const float per_mm = static_cast<float>(1 / grid.unit_mm);
+  std::vector<float> grown(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                           kNothingAbove);
+  for (int dy = -growth; dy <= growth; ++dy)
+    for (int dx = -growth; dx <= growth; ++dx) {
+      const double distance = std::hypot(apart(dx, grid.cell_mm), apart(dy, grid.cell_mm));
+      if ((dx != 0 || dy != 0) && distance >= grid.gap_mm) continue;
+      const float further =
+          static_cast<float>(std::sqrt(grid.gap_mm * grid.gap_mm - distance * distance)) * per_mm;
+      for (int row = 0; row < maps.height; ++row) {
+        const float* from = &maps.low[static_cast<std::size_t>(row * maps.width)];
+        float* to =
+            &grown[static_cast<std::size_t>((row + dy + growth) * width + dx + growth)];
+        for (int column = 0; column < maps.width; ++column)
+          to[column] = std::min(to[column], (from[column] - lowest) * per_mm - further);
+      }
+    }
+  return grown;
+}
+
+// Cells from all over the part first, so that a scan soon knows about how high it will come.
+std::vector<HeightCell> spread(const std::vector<HeightCell>& cells) {
+  constexpr std::size_t kStride = 16;
+  std::vector<HeightCell> result;
+  result.reserve(cells.size());
+  for (std::size_t i = 0; i < cells.size(); i += kStride) result.push_back(cells[i]);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (i % kStride != 0) result.push_back(cells[i]);
+  return result;
+}
+
+}  // namespace
+
+double height_unit_mm(double build_z_mm) {
+  return std::max(kFinestUnit_mm, build_z_mm / kMostUnits);
+}
+
+RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
+  RotatedPart part;
+  part.width = maps.width;
+  part.height = maps.height;
+  part.growth = static_cast<int>(std::ceil(grid.gap_mm / grid.cell_mm));
+  const Vec3 corner(maps.x0 * grid.cell_mm, maps.y0 * grid.cell_mm, maps.box.min().z());
+  const Vec3 low = ((maps.box.min() - corner) / grid.unit_mm).array() + kRounding_units;
+  const Vec3 high = ((maps.box.max() - corner) / grid.unit_mm).array() - kRounding_units;
+  part.box = Box3(Vec3(low.array().floor().max(0) * grid.unit_mm),
+                  Vec3(high.array().ceil() * grid.unit_mm));
+  part.rise = static_cast<Height>(std::ceil(high.z()));
+
+  const float lowest = static_cast<float>(maps.box.min().z());
+  const float per_mm = static_cast<float>(1 / grid.unit_mm);
+  const std::vector<float> grown = grown_low(maps, grid, part.growth, lowest);
+  const int grown_width = maps.width + 2 * part.growth;
+  for (std::size_t at = 0; at < grown.size(); ++at)
+    if (grown[at] != kNothingAbove)
+      part.reach.push_back(cell(static_cast<int>(at) % grown_width - part.growth,
+                                static_cast<int>(at) / grown_width - part.growth,
+                                rounded_down(grown[at] - kSlack_units)));
+  part.reach = spread(part.reach);
+
+  for (int y = 0; y < maps.height; ++y)
+    for (int x = 0; x < maps.width; ++x) {
+      const auto at = static_cast<std::size_t>(y * maps.width + x);
+      if (maps.top[at] != kNothingBelow)
+        part.top.push_back(
+            cell(x, y, rounded_up((maps.top[at] - lowest) * per_mm + kSlack_units)));
+      if (maps.roof[at] != kNothingBelow)
+        part.roof.push_back(cell(x, y, rounded((maps.roof[at] - lowest) * per_mm)));
+      if (maps.hangs[at] == 0) continue;
+      part.hang.push_back(cell(x, y, rounded((maps.bottom[at] - lowest) * per_mm)));
+      part.hang_sum += part.hang.back().value;
+    }
+  return part;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,40 @@
+// A part in one rotation, laid out for the placement kernel.
+#pragma once
+
+#include <vector>
+
+#include "base/geometry.h"
+#include "pack/depth_map.h"
+#include "pack/heights.h"
+
+namespace packmerger {
+
+// The part's own frame: cell (i, j) of the grid is [i·grid, (i+1)·grid] × [j·grid, (j+1)·grid],
+// z = 0 its lowest point. A position (x, y, z) adds x and y whole cells and z units.
+struct RotatedPart {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 shift = Vec3::Zero();  // own frame = rotation * model coordinates + shift, mm
+  Box3 box;                   // in the own frame, mm, rounded outwards to units; x, y in [0, grid)
+  int width = 0;              // cells
+  int height = 0;
+  int growth = 0;                 // cells by which `reach` may stand out on each side
+  Height rise = 0;                // height of the box, units
+  std::vector<HeightCell> reach;  // lower bound of matter, grown by the gap in every direction
+  std::vector<HeightCell> top;    // upper bound of matter
+  std::vector<HeightCell> roof;   // the highest matter at the cell's centre
+  std::vector<HeightCell> hang;   // the lowest matter there, where it needs support
+  std::int64_t hang_sum = 0;      // of the values of `hang`
+  double inside_support_mm3 = 0;  // between the part's own surfaces
+};
+
+struct Grid {
+  double cell_mm = 1;
+  double unit_mm = 1.0 / 64;
+  double gap_mm = 1;
+};
+
+// Bounds are rounded outwards, samples to the nearest unit. rotation, shift and inside support are
+// the caller's.
+RotatedPart quantised(const DepthMaps& maps, const Grid& grid);
+
+}  // namespace packmerger

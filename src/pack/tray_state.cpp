@@ -1,0 +1,66 @@
+#include "pack/tray_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pack/fall.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kTolerance = 1e-7;  // of a cell
+
+}  // namespace
+
+HeightField::HeightField(int width, int height, int border, Height empty)
+    : width_(width),
+      height_(height),
+      border_(border),
+      stride_(width + 2 * border),
+      values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border) +
+                  kReadAhead,
+              empty) {}
+
+int TraySpec::columns() const {
+  return std::max(1, static_cast<int>(std::ceil(build_mm.x() / grid.cell_mm - kTolerance)));
+}
+
+int TraySpec::rows() const {
+  return std::max(1, static_cast<int>(std::ceil(build_mm.y() / grid.cell_mm - kTolerance)));
+}
+
+int TraySpec::growth() const { return static_cast<int>(std::ceil(grid.gap_mm / grid.cell_mm)); }
+
+Height TraySpec::ceiling() const {
+  return static_cast<Height>(std::floor(build_mm.z() / grid.unit_mm + 1e-6));
+}
+
+TrayState::TrayState(const TraySpec& spec)
+    : upper(spec.columns(), spec.rows(), spec.growth() + 1, kBarePlate),
+      surface(spec.columns(), spec.rows(), spec.growth() + 1, 0) {}
+
+void TrayState::put(const RotatedPart& part, int x, int y, Height z, double added_mm3,
+                    double volume_mm3, const TraySpec& spec) {
+  for (const HeightCell& cell : part.top) {
+    Height& height = upper.at(x + cell.x, y + cell.y);
+    height = std::max(height, static_cast<Height>(z + cell.value));
+  }
+  for (const HeightCell& cell : part.roof) {
+    Height& height = surface.at(x + cell.x, y + cell.y);
+    height = std::max(height, static_cast<Height>(z + cell.value));
+  }
+  const Vec3 at(x * spec.grid.cell_mm, y * spec.grid.cell_mm, z * spec.grid.unit_mm);
+  contents.extend(Vec3(part.box.min() + at));
+  contents.extend(Vec3(part.box.max() + at));
+  support_mm3 += added_mm3;
+  material_mm3 += volume_mm3;
+  ++parts;
+}
+
+TrayMeasure TrayState::measure() const {
+  if (parts == 0) return {};
+  const Vec3 size = contents.sizes();
+  return {Vec3(size.x(), size.y(), contents.max().z()), support_mm3, material_mm3, parts};
+}
+
+}  // namespace packmerger

@@ -1,0 +1,64 @@
+// A tray while it is filled: its height field (paper, section 6.1), the upper horizon of what lies
+// on it, and its figures so far.
+#pragma once
+
+#include <vector>
+
+#include "model/packing.h"
+#include "pack/rotated_part.h"
+
+namespace packmerger {
+
+// Cells over the build volume with a border of empty ones all round and room behind the last, so
+// that no reader tests limits.
+class HeightField {
+ public:
+  HeightField(int width, int height, int border, Height empty);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::ptrdiff_t stride() const { return stride_; }
+  const Height* origin() const { return &values_[index(0, 0)]; }
+  Height& at(int x, int y) { return values_[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>((y + border_) * stride_ + x + border_);
+  }
+  int width_;
+  int height_;
+  int border_;
+  int stride_;
+  std::vector<Height> values_;
+};
+
+// What stays the same for all trays of a packing.
+struct TraySpec {
+  Vec3 build_mm = Vec3::Zero();
+  Grid grid;
+  const Cost* cost = nullptr;
+
+  int columns() const;
+  int rows() const;
+  int growth() const;       // of every part's `reach`, cells
+  Height ceiling() const;  // highest z of matter, units
+};
+
+struct TrayState {
+  explicit TrayState(const TraySpec& spec);
+
+  // Enters a part at a position; support_mm3: what it adds.
+  void put(const RotatedPart& part, int x, int y, Height z, double support_mm3, double volume_mm3,
+           const TraySpec& spec);
+
+  TrayMeasure measure() const;
+
+  HeightField upper;    // upper bound of matter, or kBarePlate
+  HeightField surface;  // the horizon at cell centres, 0 on the plate
+  Box3 contents;        // mm, tray coordinates; empty at first
+  double support_mm3 = 0;
+  double material_mm3 = 0;
+  int parts = 0;
+};
+
+}  // namespace packmerger
