@@ -1,5 +1,5 @@
-// Drawing without a display or a graphics card (OSMesa): depth maps for the packer and lit colour
-// images for pictures. Nothing else in the project knows OpenGL.
+// Drawing without a display or a graphics card (OSMesa): depth maps for measurements and lit
+// colour images for pictures. Nothing else in the project knows OpenGL.
 //
 // Same input, same pixels, on any number of threads. Every function throws Error{kInternal} when
 // the library cannot give a drawing surface.
@@ -7,20 +7,15 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
+#include "base/no_height.h"
 #include "model/mesh.h"
 
 namespace packmerger {
 
 // ---- depth ---------------------------------------------------------------------------------
-
-// What a depth map holds where nothing was hit: below everything when looked at from above, above
-// everything from below, so that min and max need no special case.
-inline constexpr float kNothingBelow = -std::numeric_limits<float>::infinity();
-inline constexpr float kNothingAbove = std::numeric_limits<float>::infinity();
 
 // A lattice of vertical rays: ray (i, j) stands at (x_mm + i·step_mm, y_mm + j·step_mm).
 struct RayLattice {
@@ -31,7 +26,8 @@ struct RayLattice {
   int height = 0;  // rays along y, 1..8192
 };
 
-// width × height heights in mm, x fastest: value (i, j) at [j·width + i].
+// width × height heights in mm, x fastest: value (i, j) at [j·width + i]; kNothingBelow or
+// kNothingAbove where nothing was hit.
 struct DepthMap {
   int width = 0;
   int height = 0;

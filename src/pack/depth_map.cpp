@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/no_height.h"
 #include "pack/columns.h"
 
 namespace packmerger {
@@ -42,103 +44,174 @@ DepthMaps empty_maps_around(const TriangleSoup& surface, double grid) {
   return maps;
 }
 
-DepthTriangles in_single_precision(const TriangleSoup& surface) {
-  DepthTriangles triangles;
-  triangles.points.reserve(surface.points.size());
-  for (const Vec3& point : surface.points) triangles.points.push_back(point.cast<float>());
-  triangles.triangles.reserve(surface.triangles.size());
-  for (const auto& [a, b, c] : surface.triangles)
-    triangles.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                                   static_cast<std::uint32_t>(c)});
-  return triangles;
+// A point of the rotated frame: x and y in cells from the maps' corner, so never below 0 by more
+// than rounding and truncation is the floor; z in mm.
+struct CellPoint {
+  double x;
+  double y;
+  double z;
+};
+
+std::vector<CellPoint> in_cells(const std::vector<Vec3>& points, double grid,
+                                const DepthMaps& maps) {
+  std::vector<CellPoint> result;
+  result.reserve(points.size());
+  const double scale = 1 / grid;
+  for (const Vec3& point : points)
+    result.push_back({point.x() * scale - maps.x0, point.y() * scale - maps.y0, point.z()});
+  return result;
 }
 
-std::vector<std::array<std::uint32_t, 3>> facets_that_need_support(const TriangleSoup& surface,
-                                                                   double support_angle) {
-  const double limit = support_normal_limit(support_angle);
-  std::vector<std::array<std::uint32_t, 3>> found;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Vec3& p = surface.points[static_cast<std::size_t>(a)];
-    const Vec3 normal = (surface.points[static_cast<std::size_t>(b)] - p)
-                            .cross(surface.points[static_cast<std::size_t>(c)] - p);
-    if (normal.z() < limit * normal.norm())
-      found.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                       static_cast<std::uint32_t>(c)});
+// The corners of a triangle from low to high along one axis, and how far its sides step along the
+// other axis and along z for a step along the first. A side between two corners is computed from
+// the lower one whatever triangle it belongs to, so that neighbours meet without a gap.
+template <double CellPoint::*kAlong, double CellPoint::*kAcross>
+struct SortedTriangle {
+  struct Place {
+    double across;
+    double z;
+  };
+
+  SortedTriangle(const CellPoint& p, const CellPoint& q, const CellPoint& r)
+      : first(&p), middle(&q), last(&r) {
+    if (middle->*kAlong < first->*kAlong) std::swap(first, middle);
+    if (last->*kAlong < middle->*kAlong) std::swap(middle, last);
+    if (middle->*kAlong < first->*kAlong) std::swap(first, middle);
   }
-  return found;
-}
 
-// A corner of the grid that a facet covers bounds that facet in the four cells round it.
-void enter_corners(const DepthMap& above, const DepthMap& below, DepthMaps& maps) {
-  for (int j = 0; j <= maps.height; ++j)
-    for (int i = 0; i <= maps.width; ++i) {
-      const std::size_t ray =
-          static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(above.width) +
-          static_cast<std::size_t>(2 * i);
-      for (int row = std::max(0, j - 1); row <= std::min(j, maps.height - 1); ++row)
-        for (int column = std::max(0, i - 1); column <= std::min(i, maps.width - 1); ++column) {
-          const std::size_t cell = at(maps, column, row);
-          maps.low[cell] = std::min(maps.low[cell], below.heights[ray]);
-          maps.top[cell] = std::max(maps.top[cell], above.heights[ray]);
-        }
-    }
-}
-
-void enter_centres(const DepthMap& above, const DepthMap& below, const DepthMap& hanging,
-                   DepthMaps& maps) {
-  for (int row = 0; row < maps.height; ++row)
-    for (int column = 0; column < maps.width; ++column) {
-      const std::size_t ray =
-          static_cast<std::size_t>(2 * row + 1) * static_cast<std::size_t>(above.width) +
-          static_cast<std::size_t>(2 * column + 1);
-      const std::size_t cell = at(maps, column, row);
-      maps.bottom[cell] = below.heights[ray];
-      maps.roof[cell] = above.heights[ray];
-      maps.hangs[cell] = hanging.heights[ray] != kNothingAbove &&
-                         hanging.heights[ray] <= below.heights[ray] + 1e-3F;
-    }
-}
-
-// Walks an edge from cell to cell; between two grid lines it is extreme at its ends.
-void enter_edge(const Vec3& a, const Vec3& b, double grid, std::vector<double>& cuts,
-                DepthMaps& maps) {
-  cuts.assign({0, 1});
-  for (int axis = 0; axis < 2; ++axis) {
-    const double from = a[axis] / grid;
-    const double to = b[axis] / grid;
-    const double low = std::min(from, to);
-    const double high = std::max(from, to);
-    for (double line = std::floor(low) + 1; line < high; ++line)
-      cuts.push_back(std::clamp((line - from) / (to - from), 0.0, 1.0));
+  // Where the line at `along` meets a side that it must pass strictly above `low`.
+  static Place on_side(const CellPoint& low, const CellPoint& high, double along) {
+    const double t = (along - low.*kAlong) / (high.*kAlong - low.*kAlong);
+    return {low.*kAcross + t * (high.*kAcross - low.*kAcross), low.z + t * (high.z - low.z)};
   }
-  std::sort(cuts.begin(), cuts.end());
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const Vec3 middle = a + (b - a) * ((cuts[i] + cuts[i + 1]) / 2);
-    const int column =
-        std::clamp(static_cast<int>(std::floor(middle.x() / grid)) - maps.x0, 0, maps.width - 1);
-    const int row =
-        std::clamp(static_cast<int>(std::floor(middle.y() / grid)) - maps.y0, 0, maps.height - 1);
-    const std::size_t cell = at(maps, column, row);
-    for (const double t : {cuts[i], cuts[i + 1]}) {
-      const float z = static_cast<float>(a.z() + (b.z() - a.z()) * t);
-      maps.low[cell] = std::min(maps.low[cell], z);
-      maps.top[cell] = std::max(maps.top[cell], z);
+  Place long_side(double along) const { return on_side(*first, *last, along); }
+  Place short_sides(double along) const {
+    return along <= middle->*kAlong ? on_side(*first, *middle, along)
+                                    : on_side(*middle, *last, along);
+  }
+
+  const CellPoint* first;
+  const CellPoint* middle;
+  const CellPoint* last;
+};
+
+// The cells along one axis that a triangle reaches into; none where it lies in a line of the grid:
+// what it closes there is entered by its neighbours.
+struct CellRange {
+  int first;
+  int last;
+
+  CellRange(double low, double high, int cells)
+      : first(static_cast<int>(low + kCellTolerance)),
+        last(std::min(static_cast<int>(high - kCellTolerance), cells - 1)) {}
+  int holding(double where) const { return std::clamp(static_cast<int>(where), first, last); }
+};
+
+class Rasterizer {
+ public:
+  Rasterizer(DepthMaps& maps, double grid, double normal_limit)
+      : maps_(maps), grid_(grid), normal_limit_(normal_limit) {}
+
+  void enter(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    const double low_x = std::min({a.x, b.x, c.x});
+    const double high_x = std::max({a.x, b.x, c.x});
+    const double low_y = std::min({a.y, b.y, c.y});
+    const double high_y = std::max({a.y, b.y, c.y});
+    const CellRange columns(low_x, high_x, maps_.width);
+    const CellRange rows(low_y, high_y, maps_.height);
+    if (columns.last < columns.first || rows.last < rows.first) return;
+    if (columns.first == columns.last && rows.first == rows.last) {
+      enter_bounds(at(maps_, columns.first, rows.first), std::min({a.z, b.z, c.z}),
+                   std::max({a.z, b.z, c.z}));
+    } else {
+      for (const CellPoint* corner : {&a, &b, &c})
+        enter_bounds(at(maps_, columns.holding(corner->x), rows.holding(corner->y)), corner->z,
+                     corner->z);
+      enter_lines<&CellPoint::x, &CellPoint::y>(a, b, c, columns, rows, 1, maps_.width);
+      enter_lines<&CellPoint::y, &CellPoint::x>(a, b, c, rows, columns, maps_.width, 1);
+    }
+    if (centres_up_to(low_x) < centres_up_to(high_x) &&
+        centres_up_to(low_y) < centres_up_to(high_y))
+      enter_centres(a, b, c);
+  }
+
+ private:
+  // The number of cells whose centres lie at or below `where`: of a triangle's two sides one owns
+  // the centres exactly on it.
+  static int centres_up_to(double where) {
+    const int cell = static_cast<int>(where);
+    return where - cell >= 0.5 ? cell + 1 : cell;  // exact, unlike rounding where + 0.5
+  }
+
+  void enter_bounds(std::size_t cell, double low, double high) {
+    maps_.low[cell] = std::min(maps_.low[cell], static_cast<float>(low));
+    maps_.top[cell] = std::max(maps_.top[cell], static_cast<float>(high));
+  }
+
+  // On a cell's part of a facet, a height is extreme at the facet's corners and where the facet
+  // crosses the cell's sides. Enters the crossings with the grid lines between cells `along` into
+  // the cells on both sides of each; step and side_step lead to the next cell along and across.
+  template <double CellPoint::*kAlong, double CellPoint::*kAcross>
+  void enter_lines(const CellPoint& a, const CellPoint& b, const CellPoint& c,
+                   const CellRange& along, const CellRange& across, int step, int side_step) {
+    if (along.first == along.last) return;
+    const SortedTriangle<kAlong, kAcross> sorted(a, b, c);
+    for (int line = along.first + 1; line <= along.last; ++line) {
+      auto from = sorted.long_side(line);
+      auto to = sorted.short_sides(line);
+      if (to.across < from.across) std::swap(from, to);
+      const int last = across.holding(to.across);
+      int side = across.holding(from.across);
+      std::size_t cell = static_cast<std::size_t>(line * step + side * side_step);
+      double z = from.z;
+      const double slope = side < last ? (to.z - from.z) / (to.across - from.across) : 0;
+      for (; side <= last; ++side, cell += static_cast<std::size_t>(side_step)) {
+        const double next = side == last ? to.z : from.z + slope * (side + 1 - from.across);
+        const double low = std::min(z, next);
+        const double high = std::max(z, next);
+        enter_bounds(cell, low, high);
+        enter_bounds(cell - static_cast<std::size_t>(step), low, high);
+        z = next;
+      }
     }
   }
-}
 
-void enter_edges(const TriangleSoup& surface, double grid, DepthMaps& maps) {
-  std::vector<double> cuts;
-  for (const auto& triangle : surface.triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int a = triangle[i];
-      const int b = triangle[(i + 1) % 3];
-      // In a closed surface every edge comes once in each direction.
-      if (a < b)
-        enter_edge(surface.points[static_cast<std::size_t>(a)],
-                   surface.points[static_cast<std::size_t>(b)], grid, cuts, maps);
+  void enter_centres(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    const Vec3 normal =
+        Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
+    if (normal.z() == 0) return;
+    // Steep facets are steeper still after rounding, but their heights remain theirs.
+    const double low = std::min({a.z, b.z, c.z});
+    const double high = std::max({a.z, b.z, c.z});
+    const double slope_x = -normal.x() / normal.z();
+    const double slope_y = -normal.y() / normal.z();
+    const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
+    const std::uint8_t hangs = in_mm.z() < normal_limit_ * in_mm.norm();
+    const SortedTriangle<&CellPoint::y, &CellPoint::x> sorted(a, b, c);
+    const int end = centres_up_to(sorted.last->y);
+    for (int row = centres_up_to(sorted.first->y); row < end; ++row) {
+      const double y = row + 0.5;
+      const double left = sorted.long_side(y).across;
+      const double right = sorted.short_sides(y).across;
+      const int last = centres_up_to(std::max(left, right));
+      for (int column = centres_up_to(std::min(left, right)); column < last; ++column) {
+        const double z = a.z + slope_x * (column + 0.5 - a.x) + slope_y * (y - a.y);
+        enter_centre(at(maps_, column, row), static_cast<float>(std::clamp(z, low, high)), hangs);
+      }
     }
-}
+  }
+
+  void enter_centre(std::size_t cell, float z, std::uint8_t hangs) {
+    maps_.roof[cell] = std::max(maps_.roof[cell], z);
+    if (z > maps_.bottom[cell]) return;
+    maps_.hangs[cell] = z < maps_.bottom[cell] ? hangs : maps_.hangs[cell] | hangs;
+    maps_.bottom[cell] = z;
+  }
+
+  DepthMaps& maps_;
+  double grid_;
+  double normal_limit_;
+};
 
 DepthMaps once_turned(const DepthMaps& maps) {
   DepthMaps turned;
@@ -164,20 +237,13 @@ DepthMaps once_turned(const DepthMaps& maps) {
 
 }  // namespace
 
-DepthMaps draw_depth_maps(DepthRenderer& renderer, const TriangleSoup& surface, double grid_mm,
-                          double support_angle) {
+DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
   DepthMaps maps = empty_maps_around(surface, grid_mm);
-  // Half steps: even rays are the cells' corners, odd ones their centres.
-  const RayLattice rays{maps.x0 * grid_mm, maps.y0 * grid_mm, grid_mm / 2, 2 * maps.width + 1,
-                        2 * maps.height + 1};
-  DepthTriangles triangles = in_single_precision(surface);
-  const DepthMap above = renderer.from_above(triangles, rays);
-  const DepthMap below = renderer.from_below(triangles, rays);
-  triangles.triangles = facets_that_need_support(surface, support_angle);
-  const DepthMap hanging = renderer.from_below(triangles, rays);
-  enter_corners(above, below, maps);
-  enter_centres(above, below, hanging, maps);
-  enter_edges(surface, grid_mm, maps);
+  const std::vector<CellPoint> points = in_cells(surface.points, grid_mm, maps);
+  Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
+  for (const auto& [a, b, c] : surface.triangles)
+    rasterizer.enter(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
+                     points[static_cast<std::size_t>(c)]);
   return maps;
 }
 

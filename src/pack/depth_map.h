@@ -1,12 +1,12 @@
-// Depth maps of one item in one rotation (paper, section 7: both sides from the z-buffer), and the
-// maps of merged parts, which are made of their members' maps without drawing anything.
+// Depth maps of one item in one rotation (paper, section 7, which reads both sides from a z-buffer;
+// here they bound the surface exactly), and the maps of merged parts, which are made of their
+// members' maps without drawing anything.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "model/mesh.h"
-#include "offscreen/offscreen.h"
 
 namespace packmerger {
 
@@ -19,20 +19,20 @@ struct DepthMaps {
   int width = 0;
   int height = 0;
   Box3 box;  // exact, of the rotated surface, mm
-  // Bounds over the whole closed cell: nothing of the surface lies below `low` or above `top`.
+  // The surface's least and greatest height over the whole closed cell.
   std::vector<float> low;  // kNothingAbove where the cell holds nothing
   std::vector<float> top;  // kNothingBelow
-  // Samples at the cell's centre, without bias either way.
+  // Samples at the cell's centre: a centre exactly on an edge belongs to one of the facets there.
   std::vector<float> bottom;        // kNothingAbove where the line misses
   std::vector<float> roof;          // kNothingBelow
   std::vector<std::uint8_t> hangs;  // 1 where the facet seen from below needs support
 };
 
-// surface: in the rotated frame, mm. Bounds are exact up to the z-buffer's sampling: OSMesa samples
-// the cells' corners, and vertices and edges, where a facet may reach further inside a cell, are
-// entered exactly.
-DepthMaps draw_depth_maps(DepthRenderer& renderer, const TriangleSoup& surface, double grid_mm,
-                          double support_angle);
+// surface: closed, normals outward, in the rotated frame, mm. Every value is that of the exact
+// triangles, but for rounding to float and for what reaches less than 1e-7 cells into a cell.
+// Orthographic projection along z. A facet hangs when its normal points down by more than
+// support_angle (radians) below the horizontal.
+DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
 
 // The same item turned by quarters × 90° about z: cells map to cells.
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters);

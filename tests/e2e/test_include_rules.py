@@ -16,7 +16,7 @@ MAY_INCLUDE = {
     "offscreen": {"model", "base"},
     "shape": {"model", "base"},
     "printers": {"model", "base"},
-    "pack": {"offscreen", "model", "base"},
+    "pack": {"model", "base"},
     "picture": {"offscreen", "model", "base"},
     "tray": {"picture", "model", "base"},
     "firmware_io": {"base"},

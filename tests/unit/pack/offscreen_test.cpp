@@ -7,19 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "unit/pack/shapes.h"
+#include "unit/pack/z_buffer.h"
 
 namespace packmerger {
 namespace {
 
-DepthTriangles triangles_of(const Mesh& mesh) {
-  const TriangleSoup soup = to_soup(mesh);
-  DepthTriangles result;
-  for (const Vec3& point : soup.points) result.points.push_back(point.cast<float>());
-  for (const auto& [a, b, c] : soup.triangles)
-    result.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                                static_cast<std::uint32_t>(c)});
-  return result;
-}
+DepthTriangles triangles_of(const Mesh& mesh) { return shapes::depth_triangles(to_soup(mesh)); }
 
 TEST(Depth, BoxIsFlatAndNothingAroundIt) {
   const Mesh box = shapes::box(Vec3(10, 20, 5), Vec3(3, 4, 7));

@@ -1,4 +1,4 @@
-// The packer's pieces: rotations, columns, depth maps, tabu search, exact gaps.
+// The packer's pieces: rotations, columns, tabu search, exact gaps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "base/random.h"
 #include "pack/columns.h"
-#include "pack/depth_map.h"
 #include "pack/exact_gap.h"
 #include "pack/merge.h"
 #include "pack/order.h"
@@ -18,19 +17,6 @@
 
 namespace packmerger {
 namespace {
-
-Mat3 any_rotation(Random& random) {
-  return (Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitZ()) *
-          Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitX()) *
-          Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitY()))
-      .toRotationMatrix();
-}
-
-Mesh turned(const Mesh& mesh, const Mat3& rotation) {
-  Pose pose = Pose::Identity();
-  pose.linear() = rotation;
-  return transformed(mesh, pose);
-}
 
 TEST(Rotations, AreTheDifferentProductsOfSteps) {
   EXPECT_EQ(rotation_set(0).ways_up.size(), 1U);
@@ -73,18 +59,18 @@ TEST(Columns, CupUpsideDownIsFullOfSupportAndUprightIsNot) {
   EXPECT_NEAR(column_support({to_soup(cup)}, 0.2, 0, 0).below, 0, 1e-9);
   Mat3 over = Mat3::Identity();
   over(1, 1) = over(2, 2) = -1;
-  const ColumnSupport support = column_support({to_soup(turned(cup, over))}, 0.2, 0, -20);
+  const ColumnSupport support = column_support({to_soup(shapes::turned(cup, over))}, 0.2, 0, -20);
   EXPECT_NEAR(support.below, std::numbers::pi * 64 * 18, 60);
   // On its side, the lower wall carries what supports the upper one.
   Mat3 aside;
   aside << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  EXPECT_GT(column_support({to_soup(turned(cup, aside))}, 0.2, 0, -10).inside, 1000);
+  EXPECT_GT(column_support({to_soup(shapes::turned(cup, aside))}, 0.2, 0, -10).inside, 1000);
 }
 
 RC_GTEST_PROP(Columns, AgreeWithTheEnvelopeAtZeroDegrees, (std::uint64_t seed)) {
   // At 0° the support is the volume under the upper envelope less the matter.
   Random random(seed);
-  const Mesh bowl = turned(shapes::bowl(15, 2, 24), any_rotation(random));
+  const Mesh bowl = shapes::turned(shapes::bowl(15, 2, 24), shapes::any_rotation(random));
   const double plate = bounding_box(bowl).min().z();
   const ColumnSupport support = column_support({to_soup(bowl)}, 0.25, 0, plate);
   PackProblem problem = shapes::problem_of({bowl}, Vec3(80, 80, 80));
@@ -96,93 +82,6 @@ RC_GTEST_PROP(Columns, AgreeWithTheEnvelopeAtZeroDegrees, (std::uint64_t seed)) 
     if (std::isfinite(top)) envelope += top * 0.25 * 0.25;
   const double expected = envelope - volume_mm3(bowl);
   RC_ASSERT(std::abs(support.below + support.inside - expected) < 0.02 * expected + 40);
-}
-
-// Nothing of the surface lies in a cell without bounds or outside of them.
-void expect_bounds(const DepthMaps& maps, const Mesh& mesh, double grid, Random& random) {
-  const double slack = 0.004 * grid + 1e-3;
-  for (const auto face : mesh.faces()) {
-    const auto corner = corners(mesh, face);
-    const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-    for (int i = 0; i < 40; ++i) {
-      double u = random.unit();
-      double v = random.unit();
-      if (u + v > 1) {
-        u = 1 - u;
-        v = 1 - v;
-      }
-      const Vec3 p = corner[0] + u * (corner[1] - corner[0]) + v * (corner[2] - corner[0]);
-      const int x = static_cast<int>(std::floor(p.x() / grid)) - maps.x0;
-      const int y = static_cast<int>(std::floor(p.y() / grid)) - maps.y0;
-      RC_ASSERT(x >= 0 && x < maps.width && y >= 0 && y < maps.height);
-      const std::size_t at = static_cast<std::size_t>(y * maps.width + x);
-      // Steep facets may be off by the slack sideways.
-      const double allowed = slack / std::max(std::abs(normal.z()), 1e-3);
-      RC_ASSERT(maps.low[at] <= p.z() + allowed);
-      RC_ASSERT(maps.top[at] >= p.z() - allowed);
-    }
-  }
-}
-
-RC_GTEST_PROP(DepthMaps, BoundTheSurfaceInEveryCell, (std::uint64_t seed)) {
-  Random random(seed);
-  const double grid = 0.5 + random.unit();
-  const Mesh mesh =
-      turned(random.below(2) == 0 ? shapes::l_shape(20, 3, 11) : shapes::bowl(13, 1.5, 12),
-             any_rotation(random));
-  DepthRenderer renderer;
-  const DepthMaps maps = draw_depth_maps(renderer, to_soup(mesh), grid, 0);
-  expect_bounds(maps, mesh, grid, random);
-  // Turned by quarters, they bound the turned surface.
-  for (int quarters = 1; quarters < 4; ++quarters)
-    expect_bounds(quarter_turned(maps, quarters),
-                  turned(mesh, turn_about_z(quarters * std::numbers::pi / 2)), grid, random);
-}
-
-TEST(DepthMaps, BoundsAreTight) {
-  // A plane slope of 1 in x: the bounds of a cell lie one cell apart, the sample in the middle.
-  const Mesh wedge = shapes::tetrahedron(20);
-  DepthRenderer renderer;
-  const DepthMaps maps = draw_depth_maps(renderer, to_soup(wedge), 1, 0);
-  for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) {
-      const std::size_t at = static_cast<std::size_t>(y * maps.width + x);
-      EXPECT_NEAR(maps.top[at], 20 - x - y, 0.02);
-      EXPECT_NEAR(maps.roof[at], 19 - x - y, 0.02);
-      EXPECT_NEAR(maps.low[at], 0, 1e-4);
-    }
-}
-
-TEST(DepthMaps, ABoxOnTheGridKeepsToItsCells) {
-  DepthRenderer renderer;
-  const DepthMaps maps =
-      draw_depth_maps(renderer, to_soup(shapes::box(Vec3(5, 3, 2), Vec3(-2, 1, 4))), 1, 0);
-  EXPECT_EQ(maps.x0, -2);
-  EXPECT_EQ(maps.y0, 1);
-  EXPECT_EQ(maps.width, 5);
-  EXPECT_EQ(maps.height, 3);
-  for (std::size_t i = 0; i < maps.low.size(); ++i) {
-    EXPECT_NEAR(maps.low[i], 4, 1e-4);
-    EXPECT_NEAR(maps.top[i], 6, 1e-4);
-    EXPECT_EQ(maps.hangs[i], 1);
-  }
-}
-
-TEST(DepthMaps, UnitedMapsAreTheMapsOfTheUnion) {
-  const Mesh a = shapes::box(Vec3(4, 4, 4), Vec3(0.3, 0.3, 0));
-  const Mesh b = shapes::box(Vec3(4, 4, 4), Vec3(2.3, 6.3, 8));
-  DepthRenderer renderer;
-  const DepthMaps map_a = draw_depth_maps(renderer, to_soup(a), 1, 0);
-  const DepthMaps map_b = draw_depth_maps(renderer, to_soup(b), 1, 0);
-  const DepthMaps both = united_maps({&map_a, &map_b});
-  const DepthMaps drawn =
-      draw_depth_maps(renderer, to_soup(united(std::vector<const Mesh*>{&a, &b})), 1, 0);
-  ASSERT_EQ(both.low.size(), drawn.low.size());
-  for (std::size_t i = 0; i < both.low.size(); ++i) {
-    EXPECT_TRUE(both.low[i] == drawn.low[i] || std::abs(both.low[i] - drawn.low[i]) < 1e-4);
-    EXPECT_TRUE(both.top[i] == drawn.top[i] || std::abs(both.top[i] - drawn.top[i]) < 1e-4);
-  }
-  EXPECT_EQ(both.hangs, drawn.hangs);
 }
 
 TEST(ExactGap, KnownDistances) {
@@ -206,9 +105,9 @@ RC_GTEST_PROP(ExactGap, AgreesWithBruteForce, (std::uint64_t seed)) {
       shapes::problem_of({shapes::l_shape(10, 2, 5), shapes::tetrahedron(8)}, Vec3(100, 100, 100));
   PlacedPart a{{0}, Pose::Identity(), 0};
   PlacedPart b{{1}, Pose::Identity(), 0};
-  a.pose.linear() = any_rotation(random);
-  b.pose.linear() = any_rotation(random);
-  b.pose.translation() = any_rotation(random) * Vec3(17 + 10 * random.unit(), 0, 0);
+  a.pose.linear() = shapes::any_rotation(random);
+  b.pose.linear() = shapes::any_rotation(random);
+  b.pose.translation() = shapes::any_rotation(random) * Vec3(17 + 10 * random.unit(), 0, 0);
   const double exact = check::brute_force_distance(check::placed_triangles(problem, a),
                                                    check::placed_triangles(problem, b));
   RC_PRE(exact > 0.01);

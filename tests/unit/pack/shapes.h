@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/random.h"
 #include "model/mesh.h"
 
 namespace packmerger::shapes {
@@ -156,6 +157,19 @@ inline Mesh sphere_patch(double radius, double wall, int face, int n) {
     quad(at(n, i), inner + at(n, i), inner + at(n, i + 1), at(n, i + 1));
   }
   return closed_mesh(soup);
+}
+
+inline Mat3 any_rotation(Random& random) {
+  return (Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitZ()) *
+          Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitX()) *
+          Eigen::AngleAxisd(6 * random.unit(), Vec3::UnitY()))
+      .toRotationMatrix();
+}
+
+inline Mesh turned(const Mesh& mesh, const Mat3& rotation) {
+  Pose pose = Pose::Identity();
+  pose.linear() = rotation;
+  return transformed(mesh, pose);
 }
 
 }  // namespace packmerger::shapes
