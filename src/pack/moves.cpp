@@ -10,6 +10,7 @@ namespace packmerger {
 namespace {
 
 constexpr std::size_t kRotationsTried = 20;
+constexpr std::size_t kBetterWays = 8;  // by what the part costs alone: tried most of the time
 constexpr std::size_t kMostPutAgain = 3;
 
 struct Place {
@@ -68,10 +69,9 @@ void look_again(std::vector<Task>& tasks, std::size_t first) {
 std::vector<const RotatedPart*> Moves::some_rotations(const Part& part, Random& random) {
   std::vector<std::pair<std::size_t, std::size_t>> chosen;  // way, turn
   for (std::size_t i = 0; i < kRotationsTried; ++i) {
-    // Better ways are drawn more often.
-    const double u = random.unit();
-    const auto way = static_cast<std::size_t>(u * u * static_cast<double>(part.ways.size()));
-    chosen.emplace_back(way, random.below(maker_.turns()));
+    const std::size_t among =
+        random.below(8) == 0 ? part.ways.size() : std::min(part.ways.size(), kBetterWays);
+    chosen.emplace_back(random.below(among), random.below(maker_.turns()));
   }
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());

@@ -122,16 +122,14 @@ Packing packing_of(const Layout& layout, const PartMaker& maker, const PackProbl
   return packing;
 }
 
-TraySpec tray_spec(const PackProblem& problem, double cell_mm, double margin_mm) {
-  return {problem.build_mm,
-          {cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm + margin_mm},
-          &problem.cost};
+Grid grid_of(const PackProblem& problem, double cell_mm, bool bounds, double margin_mm = 0) {
+  return {cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm + margin_mm, bounds};
 }
 
 // A maker and the trays of one grid.
 struct Workshop {
-  Workshop(const PackProblem& problem, double cell_mm, double margin_mm, Pace& pace)
-      : spec(tray_spec(problem, cell_mm, margin_mm)),
+  Workshop(const PackProblem& problem, const Grid& grid, Pace& pace)
+      : spec{problem.build_mm, grid, &problem.cost},
         maker(problem, spec.grid, [&pace] { pace.tick(); }),
         layouter(spec) {}
 
@@ -153,9 +151,9 @@ Layout side_by_side(const PackProblem& problem, Workshop& workshop) {
 // What the search found on its grid, taken over to the answer's grid and to the finest.
 Packing finished(const PackProblem& problem, const Layout& found, const Grid& grid,
                  double margin_mm, Pace& pace) {
-  Workshop placing(problem, problem.grid_mm, margin_mm, pace);
+  Workshop placing(problem, grid_of(problem, problem.grid_mm, true, margin_mm), pace);
   Layout layout = refined(found, grid, placing.layouter, placing.maker, grid.cell_mm);
-  Workshop finest(problem, problem.grid_mm * kFinestShare, margin_mm, pace);
+  Workshop finest(problem, grid_of(problem, problem.grid_mm * kFinestShare, true, margin_mm), pace);
   layout = refined(layout, placing.spec.grid, finest.layouter, finest.maker, problem.grid_mm);
   for (int pass = 1; pass < kFinestPasses; ++pass) {
     Layout again = refined(layout, finest.spec.grid, finest.layouter, finest.maker,
@@ -216,14 +214,17 @@ void make_items(const PackProblem& problem, PartMaker& maker) {
 Packing pack(const PackProblem& problem, const Progress& progress) {
   check_settings(problem);
   Pace pace(progress, problem.budget_s);
-  Workshop searching(problem, std::max(problem.search_grid_mm, problem.grid_mm), 0, pace);
+  Workshop searching(problem, grid_of(problem, std::max(problem.search_grid_mm, problem.grid_mm), false),
+                     pace);
   make_items(problem, searching.maker);
   std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
   layouts.push_back(side_by_side(problem, searching));
 
   std::vector<Packing> packings(layouts.size());
+  for (auto& l : layouts) fprintf(stderr,"D layout %d cost %.3f\n", l.parts(), l.cost);
   for (std::size_t i = 0; i < layouts.size(); ++i) {
     packings[i] = finished(problem, layouts[i], searching.spec.grid, 0, pace);
+    fprintf(stderr,"D finished %d cost %.3f Vs %.0f t %.2f\n", (int)packings[i].parts.size(), packings[i].cost, packings[i].trays[0].support_mm3, pace.passed());
     pace.reached(0.8 + 0.15 * static_cast<double>(i + 1) / static_cast<double>(layouts.size()));
   }
   const auto cheapest = std::min_element(

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/no_height.h"
 #include "pack/columns.h"
 
 namespace packmerger {

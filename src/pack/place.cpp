@@ -12,6 +12,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kTolerance_mm = 1e-9;
+constexpr double kRounding = 1e-12;  // of a cost: bounds and costs may round differently
 
 // One part in one rotation over one tray: what its positions cost.
 class Rating {
@@ -110,8 +111,8 @@ class Scan {
         rating_(tray, part, volume_mm3, spec) {}
 
   void run() {
-    const Range xs = intersection(inside_tray(part_, spec_, 0), rules_.x);
-    const Range ys = intersection(inside_tray(part_, spec_, 1), rules_.y);
+    const Range xs = intersection(intersection(inside_tray(part_, spec_, 0), reachable(0)), rules_.x);
+    const Range ys = intersection(intersection(inside_tray(part_, spec_, 1), reachable(1)), rules_.y);
     if (xs.empty() || ys.empty() || part_.rise > spec_.ceiling()) return;
     least_x_ = rating_.least_growth(xs, 0);
     least_y_ = rating_.least_growth(ys, 1);
@@ -119,12 +120,20 @@ class Scan {
     least_y_range_ = ys;
     limit();
     for (int y = ys.first; y <= ys.last && highest_ >= 0; ++y) {
-      if (best_ && least_bound(y, 0, 0) > best_->cost) continue;
+      if (best_ && least_bound(y, 0, 0) > dearest_) continue;
       scan_row(xs, y);
     }
   }
 
  private:
+  // Up to the first position beside all contents: from there on the part stands on the bare plate,
+  // costs no less and loses every tie.
+  Range reachable(int axis) const {
+    if (tray_.parts == 0) return {0, 0};
+    const double end = tray_.contents.max()[axis] / spec_.grid.cell_mm;
+    return {0, static_cast<int>(std::ceil(end)) + spec_.growth()};
+  }
+
   // The bound at the best column, in row y.
   double least_bound(int y, Height z, std::int64_t waste) const {
     const int before = std::max(least_x_ - 1, least_x_range_.first);
@@ -133,8 +142,7 @@ class Scan {
 
   bool worth_it(Height z, std::int64_t waste) const {
     const int before = std::max(least_y_ - 1, least_y_range_.first);
-    return least_bound(least_y_, z, waste) <= best_->cost ||
-           least_bound(before, z, waste) <= best_->cost;
+    return least_bound(least_y_, z, waste) <= dearest_ || least_bound(before, z, waste) <= dearest_;
   }
 
   // The height and the waste above which no position costs less than the best; highest_ < 0: none
@@ -143,6 +151,7 @@ class Scan {
     highest_ = rules_.on_plate_only ? 0 : spec_.ceiling() - part_.rise;
     most_waste_ = static_cast<std::int64_t>(part_.hang.size()) * spec_.ceiling();
     if (!best_) return;
+    dearest_ = best_->cost + kRounding * std::abs(best_->cost);
     if (!worth_it(0, 0)) {
       highest_ = -1;
       return;
@@ -203,6 +212,7 @@ class Scan {
   Range least_y_range_;
   int highest_ = 0;
   std::int64_t most_waste_ = 0;
+  double dearest_ = 0;  // that is still worth rating
   std::vector<Height> heights_;
   std::int32_t sums_[kRun + kReadAhead];
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/no_height.h"
+
 namespace packmerger {
 namespace {
 
@@ -19,26 +21,30 @@ HeightCell cell(int x, int y, Height value) {
   return {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), value};
 }
 
-// Least horizontal distance between the points of two cells that lie `cells` apart on one axis.
-double apart(int cells, double cell_mm) { return std::max(0, std::abs(cells) - 1) * cell_mm; }
+// Least horizontal distance between the points of two cells that lie `cells` apart on one axis, or
+// the distance of their centres.
+double apart(int cells, const Grid& grid) {
+  return (grid.bounds ? std::max(0, std::abs(cells) - 1) : std::abs(cells)) * grid.cell_mm;
+}
 
-// The lower bound of the part grown by a ball of radius gap_mm, so that matter dropped on it keeps
+// The lower side of the part grown by a ball of radius gap_mm, so that matter dropped on it keeps
 // its distance in every direction: over a cell at horizontal distance d the part reaches
 // sqrt(gap² - d²) further down. In units, kNothingAbove where empty.
 std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth, float lowest) {
   const int width = maps.width + 2 * growth;
   const int height = maps.height + 2 * growth;
   const float per_mm = static_cast<float>(1 / grid.unit_mm);
+  const std::vector<float>& low = grid.bounds ? maps.low : maps.bottom;
   std::vector<float> grown(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                            kNothingAbove);
   for (int dy = -growth; dy <= growth; ++dy)
     for (int dx = -growth; dx <= growth; ++dx) {
-      const double distance = std::hypot(apart(dx, grid.cell_mm), apart(dy, grid.cell_mm));
+      const double distance = std::hypot(apart(dx, grid), apart(dy, grid));
       if ((dx != 0 || dy != 0) && distance >= grid.gap_mm) continue;
       const float further =
           static_cast<float>(std::sqrt(grid.gap_mm * grid.gap_mm - distance * distance)) * per_mm;
       for (int row = 0; row < maps.height; ++row) {
-        const float* from = &maps.low[static_cast<std::size_t>(row * maps.width)];
+        const float* from = &low[static_cast<std::size_t>(row * maps.width)];
         float* to =
             &grown[static_cast<std::size_t>((row + dy + growth) * width + dx + growth)];
         for (int column = 0; column < maps.width; ++column)
@@ -80,20 +86,21 @@ RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
   const float lowest = static_cast<float>(maps.box.min().z());
   const float per_mm = static_cast<float>(1 / grid.unit_mm);
   const std::vector<float> grown = grown_low(maps, grid, part.growth, lowest);
+  const std::vector<float>& top = grid.bounds ? maps.top : maps.roof;
+  const float slack = grid.bounds ? kSlack_units : 0;
   const int grown_width = maps.width + 2 * part.growth;
   for (std::size_t at = 0; at < grown.size(); ++at)
     if (grown[at] != kNothingAbove)
       part.reach.push_back(cell(static_cast<int>(at) % grown_width - part.growth,
                                 static_cast<int>(at) / grown_width - part.growth,
-                                rounded_down(grown[at] - kSlack_units)));
+                                rounded_down(grown[at] - slack)));
   part.reach = spread(part.reach);
 
   for (int y = 0; y < maps.height; ++y)
     for (int x = 0; x < maps.width; ++x) {
       const auto at = static_cast<std::size_t>(y * maps.width + x);
-      if (maps.top[at] != kNothingBelow)
-        part.top.push_back(
-            cell(x, y, rounded_up((maps.top[at] - lowest) * per_mm + kSlack_units)));
+      if (top[at] != kNothingBelow)
+        part.top.push_back(cell(x, y, rounded_up((top[at] - lowest) * per_mm + slack)));
       if (maps.roof[at] != kNothingBelow)
         part.roof.push_back(cell(x, y, rounded((maps.roof[at] - lowest) * per_mm)));
       if (maps.hangs[at] == 0) continue;

@@ -19,8 +19,8 @@ struct RotatedPart {
   int height = 0;
   int growth = 0;                 // cells by which `reach` may stand out on each side
   Height rise = 0;                // height of the box, units
-  std::vector<HeightCell> reach;  // lower bound of matter, grown by the gap in every direction
-  std::vector<HeightCell> top;    // upper bound of matter
+  std::vector<HeightCell> reach;  // the lower side of matter, grown by the gap in every direction
+  std::vector<HeightCell> top;    // its upper side
   std::vector<HeightCell> roof;   // the highest matter at the cell's centre
   std::vector<HeightCell> hang;   // the lowest matter there, where it needs support
   std::int64_t hang_sum = 0;      // of the values of `hang`
@@ -31,10 +31,13 @@ struct Grid {
   double cell_mm = 1;
   double unit_mm = 1.0 / 64;
   double gap_mm = 1;
+  // What `reach` and `top` hold. Bounds of whole cells, rounded outwards: parts keep their gap
+  // wherever they are put. Samples at the cells' centres: a wall takes the room it takes on
+  // average, so a search on coarse cells sees what a finer grid will make of its layout.
+  bool bounds = true;
 };
 
-// Bounds are rounded outwards, samples to the nearest unit. rotation, shift and inside support are
-// the caller's.
+// rotation, shift and inside support are the caller's.
 RotatedPart quantised(const DepthMaps& maps, const Grid& grid);
 
 }  // namespace packmerger

@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <cstdio>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -15,7 +16,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSearchShare = 0.8;       // of the packing's progress, and of its budget
 constexpr int kKicks = 5;                  // without a better layout before the search ends
-constexpr int kKickMoves = 4;
+constexpr int kKickMoves = 2;
+constexpr double kDetour = 1.02;           // dearer than the best so far a layout on the way may be
 constexpr std::size_t kStartWays = 6;      // ways up in every turn for the first layout
 constexpr double kWorthKeeping = 1.05;     // of the cheapest cost
 constexpr std::size_t kMostKept = 3;
@@ -42,7 +44,9 @@ class TabuSearch {
     int kicks = 0;
     while (!over()) {
       const double before = best_.cost;
+      fprintf(stderr,"D start %.3f\n", current.cost);
       descend(current);
+      fprintf(stderr,"D kick %d best %.3f parts %d moves %d\n", kicks, best_.cost, best_.parts(), evals_);
       kicks = best_.cost < before ? 0 : kicks + 1;
       if (kicks > kKicks || over()) break;
       current = kicked(best_);
@@ -82,12 +86,13 @@ class TabuSearch {
       for (std::size_t i = 0; i < layouts.size(); ++i)
         if (layouts[i] && (chosen == layouts.size() || layouts[i]->cost < layouts[chosen]->cost))
           chosen = i;
-      if (chosen == layouts.size()) break;
+      ++rounds_without_better;
+      if (chosen == layouts.size()) continue;
+      if (layouts[chosen]->cost > kDetour * reached) continue;
       current = std::move(*layouts[chosen]);
       forbidden.push_back(moves[chosen].touched);
       if (static_cast<int>(forbidden.size()) > problem_.tabu_memory) forbidden.pop_front();
       keep(current);
-      ++rounds_without_better;
       if (current.cost < reached) {
         reached = current.cost;
         rounds_without_better = 0;
@@ -120,6 +125,7 @@ class TabuSearch {
   // does not depend on the threads.
   std::vector<std::optional<Layout>> carried_out(const std::vector<Move>& moves) {
     std::vector<std::optional<Layout>> layouts(moves.size());
+    evals_ += (int)moves.size();
     std::atomic<double> least = kInfinity;
     parallel_for(moves.size(), [&](std::size_t i) {
       pace_.tick();
@@ -161,7 +167,7 @@ class TabuSearch {
   Moves moves_;
   Pace& pace_;
   Random random_;
-  Layout best_;
+  Layout best_; int evals_=0;
   std::map<int, Layout> cheapest_;  // by number of parts
 };
 

@@ -94,10 +94,13 @@ ReferenceMaps ReferencePacker::draw(const std::vector<TriangleSoup>& surfaces,
                                     const Mat3& rotation) {
   ReferenceMaps maps;
   maps.rotation = rotation;
+  Box3 exact;
   for (const TriangleSoup& surface : surfaces)
-    for (const Vec3& point : surface.points) maps.box.extend(Vec3(rotation * point));
+    for (const Vec3& point : surface.points) exact.extend(Vec3(rotation * point));
   const double grid = problem_.grid_mm;
-  const Vec3 low = maps.box.min();
+  const Vec3 low = exact.min();
+  // In whole units, as all heights, so that equal places have equal costs to the last bit.
+  maps.box = Box3(Vec3(0, 0, 0), Vec3((exact.sizes() / unit_mm_).array().ceil() * unit_mm_));
   maps.width = std::max(1, static_cast<int>(std::ceil(maps.box.sizes().x() / grid - 1e-9)));
   maps.height = std::max(1, static_cast<int>(std::ceil(maps.box.sizes().y() / grid - 1e-9)));
   const RayLattice rays{low.x() + grid / 2, low.y() + grid / 2, grid, maps.width, maps.height};

@@ -21,7 +21,7 @@ using Height = std::int16_t;
 // heights above the lowest point of the part.
 struct ReferenceMaps {
   Mat3 rotation = Mat3::Identity();
-  Box3 box;  // mm, of the rotated surface
+  Box3 box;  // mm, from the grid's corner and the lowest point on, rounded up to whole units
   int width = 0;
   int height = 0;
   std::vector<Height> bottom;       // kNothing where the ray misses
