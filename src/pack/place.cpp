@@ -163,7 +163,7 @@ class Scan {
 
   void scan_row(const Range& xs, int y) {
     const int count = xs.count();
-    heights_.resize(static_cast<std::size_t>(count) + kReadAhead);
+    heights_.resize(static_cast<std::size_t>(count) + kFallReadAhead);
     fall(tray_.upper.origin(), tray_.upper.stride(), part_.reach, xs.first, y, 0,
          static_cast<Height>(highest_), heights_.data(), count);
     for (int i = 0; i < count;) {
@@ -214,7 +214,7 @@ class Scan {
   std::int64_t most_waste_ = 0;
   double dearest_ = 0;  // that is still worth rating
   std::vector<Height> heights_;
-  std::int32_t sums_[kRun + kReadAhead];
+  std::int32_t sums_[kRun + kFallReadAhead];
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ HeightField::HeightField(int width, int height, int border, Height empty)
       border_(border),
       stride_(width + 2 * border),
       values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border) +
-                  kReadAhead,
+                  kFallReadAhead,
               empty) {}
 
 int TraySpec::columns() const {

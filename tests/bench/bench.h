@@ -8,6 +8,9 @@ namespace packmerger::bench {
 // How much smoothing straightens the cuts of a model, as figures and as a picture.
 void add_cuts(CLI::App& program);
 
+// The packer's inner loops against plain loops, OSMesa and the least they have to do.
+void add_kernels(CLI::App& program);
+
 // The paper's packer, simple and slow, on a model's segments.
 void add_reference(CLI::App& program);
 

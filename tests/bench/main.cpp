@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   CLI::App program("What the docs say was measured, measured again");
   program.require_subcommand(1);
   packmerger::bench::add_cuts(program);
+  packmerger::bench::add_kernels(program);
   packmerger::bench::add_reference(program);
   try {
     program.parse(argc, argv);

@@ -1,0 +1,186 @@
+// Speed of the packer's innermost loops: depth maps against OSMesa, and the placement kernel
+// against plain loops and against the least it has to do.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/random.h"
+#include "bench/bare_kernel.h"
+#include "bench/bench.h"
+#include "pack/depth_map.h"
+#include "pack/fall.h"
+#include "unit/pack/shapes.h"
+#include "unit/pack/z_buffer.h"
+
+namespace packmerger::bench {
+namespace {
+
+// ---- depth maps ----------------------------------------------------------------------------
+
+// A piece of a shell, 3 mm thick, in triangles of about 1.6 mm, askew.
+const TriangleSoup& segment() {
+  static const TriangleSoup kSegment = [] {
+    Random random(7);
+    return to_soup(
+        shapes::turned(shapes::sphere_patch(50, 3, 0, 50), shapes::any_rotation(random)));
+  }();
+  return kSegment;
+}
+
+void count_triangles(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() *
+                          static_cast<std::int64_t>(segment().triangles.size()));
+}
+
+void depth_maps(benchmark::State& state, double grid_mm) {
+  for (auto step : state) benchmark::DoNotOptimize(draw_depth_maps(segment(), grid_mm, 0));
+  count_triangles(state);
+}
+
+// All of OSMesa's threads count. The two views that the same maps' bounds and centres need.
+void depth_maps_by_osmesa(benchmark::State& state, double grid_mm) {
+  const DepthMaps maps = draw_depth_maps(segment(), grid_mm, 0);
+  const RayLattice rays{maps.x0 * grid_mm, maps.y0 * grid_mm, grid_mm / 2, 2 * maps.width + 1,
+                        2 * maps.height + 1};
+  const DepthTriangles triangles = shapes::depth_triangles(segment());
+  DepthRenderer renderer;
+  for (auto step : state) {
+    benchmark::DoNotOptimize(renderer.from_below(triangles, rays));
+    benchmark::DoNotOptimize(renderer.from_above(triangles, rays));
+  }
+  count_triangles(state);
+}
+
+// ---- placement -----------------------------------------------------------------------------
+
+constexpr int kTray = 150;
+constexpr int kPart = 60;
+constexpr int kStride = kTray + kFallReadAhead + 1;
+constexpr int kPositions = kTray - kPart + 1;  // a row, and rows
+constexpr Height kNeverGiveUp = 32767;
+
+// A part of 60 × 60 cells over a tray of 150 × 150.
+struct Scene {
+  Scene() : field(static_cast<std::size_t>(kStride * (kTray + 1))) {
+    Random random(3);
+    for (Height& height : field) height = static_cast<Height>(random.below(8000));
+    for (int y = 0; y < kPart; ++y)
+      for (int x = 0; x < kPart; ++x)
+        cells.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                         static_cast<Height>(random.below(3000))});
+  }
+  std::vector<Height> field;
+  std::vector<HeightCell> cells;
+};
+
+void plain_loops(const Scene& scene, int y, Height* heights) {
+  std::fill_n(heights, kPositions, Height{0});
+  for (const HeightCell& cell : scene.cells) {
+    const Height* field = &scene.field[static_cast<std::size_t>((y + cell.y) * kStride + cell.x)];
+    for (int i = 0; i < kPositions; ++i)
+      heights[i] = std::max(heights[i], static_cast<Height>(field[i] - cell.value));
+  }
+}
+
+// Calls row(y, heights) for every row of positions and counts cells times positions.
+template <typename Row>
+void all_positions(benchmark::State& state, const Row& row) {
+  std::vector<Height> heights(kPositions);
+  for (auto step : state)
+    for (int y = 0; y < kPositions; ++y) {
+      row(y, heights.data());
+      benchmark::DoNotOptimize(heights.data());
+      benchmark::ClobberMemory();
+    }
+  state.SetItemsProcessed(state.iterations() * kPart * kPart * kPositions * kPositions);
+}
+
+void fall_by_plain_loops(benchmark::State& state) {
+  const Scene scene;
+  all_positions(state, [&](int y, Height* heights) { plain_loops(scene, y, heights); });
+}
+
+void fall_by_kernel(benchmark::State& state) {
+  const Scene scene;
+  all_positions(state, [&](int y, Height* heights) {
+    fall(scene.field.data(), kStride, scene.cells, 0, y, 0, kNeverGiveUp, heights, kPositions);
+  });
+}
+
+void sums_by_kernel(benchmark::State& state) {
+  const Scene scene;
+  std::vector<std::int32_t> sums(kPositions);
+  all_positions(state, [&](int y, Height*) {
+    sum_field(scene.field.data(), kStride, scene.cells, 0, y, sums.data(), kPositions);
+    benchmark::DoNotOptimize(sums.data());
+  });
+}
+
+// As many cells as a row of the part has, over as much of the field as stays in the first cache.
+void fall_bare(benchmark::State& state) {
+  const Scene scene;
+  std::vector<BareCell> cells;
+  for (int i = 0; i < 1024; ++i)
+    cells.push_back({i * 7 % 4096, scene.cells[static_cast<std::size_t>(i)].value});
+  std::vector<Height> heights(kBarePositions);
+  for (auto step : state) {
+    bare_fall(scene.field.data(), cells, heights.data());
+    benchmark::DoNotOptimize(heights.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(cells.size()) *
+                          kBarePositions);
+}
+
+// ---- the verb ------------------------------------------------------------------------------
+
+// Keeps each figure beside printing it.
+class KeepingReporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      const auto rate = run.counters.find("items_per_second");
+      if (rate != run.counters.end()) rates[run.run_name.function_name] = rate->second.value;
+    }
+  }
+  std::map<std::string, double> rates;  // items a second
+};
+
+void measure_kernels() {
+  using benchmark::RegisterBenchmark;
+  RegisterBenchmark("depth_maps_1mm", depth_maps, 1.0)->MeasureProcessCPUTime();
+  RegisterBenchmark("depth_maps_2mm", depth_maps, 2.0)->MeasureProcessCPUTime();
+  RegisterBenchmark("osmesa_1mm", depth_maps_by_osmesa, 1.0)->MeasureProcessCPUTime();
+  RegisterBenchmark("osmesa_2mm", depth_maps_by_osmesa, 2.0)->MeasureProcessCPUTime();
+  RegisterBenchmark("fall_plain", fall_by_plain_loops);
+  RegisterBenchmark("fall_bare", fall_bare);
+  RegisterBenchmark("fall", fall_by_kernel);
+  RegisterBenchmark("sum_field", sums_by_kernel);
+  KeepingReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  auto& rates = reporter.rates;
+  for (const char* grid : {"1mm", "2mm"}) {
+    const double ours = rates[fmt::format("depth_maps_{}", grid)];
+    fmt::print("depth maps, {} grid: {:.1f} Mtri/s, {:.1f} times OSMesa's\n", grid, ours / 1e6,
+               ours / rates[fmt::format("osmesa_{}", grid)]);
+  }
+  fmt::print(
+      "fall: {:.1f} Gcell/s; plain loops {:.1f}, bare {:.1f}; ours / bare = {:.2f}\n"
+      "sum_field: {:.1f} Gcell/s\n",
+      rates["fall"] / 1e9, rates["fall_plain"] / 1e9, rates["fall_bare"] / 1e9,
+      rates["fall"] / rates["fall_bare"], rates["sum_field"] / 1e9);
+}
+
+}  // namespace
+
+void add_kernels(CLI::App& program) {
+  program.add_subcommand("kernels", "Speed of the packer's inner loops")->callback(measure_kernels);
+}
+
+}  // namespace packmerger::bench
