@@ -72,11 +72,14 @@ struct SortedTriangle {
     double z;
   };
 
-  SortedTriangle(const CellPoint& p, const CellPoint& q, const CellPoint& r)
-      : first(&p), middle(&q), last(&r) {
-    if (middle->*kAlong < first->*kAlong) std::swap(first, middle);
-    if (last->*kAlong < middle->*kAlong) std::swap(middle, last);
-    if (middle->*kAlong < first->*kAlong) std::swap(first, middle);
+  SortedTriangle(const CellPoint& p, const CellPoint& q, const CellPoint& r) {
+    // Which corner is which is as good as random: chosen without branches.
+    const CellPoint* low = q.*kAlong < p.*kAlong ? &q : &p;
+    const CellPoint* high = q.*kAlong < p.*kAlong ? &p : &q;
+    const CellPoint* upper = r.*kAlong < high->*kAlong ? &r : high;
+    last = r.*kAlong < high->*kAlong ? high : &r;
+    first = upper->*kAlong < low->*kAlong ? upper : low;
+    middle = upper->*kAlong < low->*kAlong ? low : upper;
   }
 
   // Where the line at `along` meets a side that it must pass strictly above `low`.
@@ -86,8 +89,8 @@ struct SortedTriangle {
   }
   Place long_side(double along) const { return on_side(*first, *last, along); }
   Place short_sides(double along) const {
-    return along <= middle->*kAlong ? on_side(*first, *middle, along)
-                                    : on_side(*middle, *last, along);
+    const bool lower = along <= middle->*kAlong;
+    return on_side(lower ? *first : *middle, lower ? *middle : *last, along);
   }
 
   const CellPoint* first;
@@ -157,9 +160,11 @@ class Rasterizer {
     if (along.first == along.last) return;
     const SortedTriangle<kAlong, kAcross> sorted(a, b, c);
     for (int line = along.first + 1; line <= along.last; ++line) {
-      auto from = sorted.long_side(line);
-      auto to = sorted.short_sides(line);
-      if (to.across < from.across) std::swap(from, to);
+      const auto one = sorted.long_side(line);
+      const auto other = sorted.short_sides(line);
+      const bool turned = other.across < one.across;
+      const auto from = turned ? other : one;
+      const auto to = turned ? one : other;
       const int last = across.holding(to.across);
       int side = across.holding(from.across);
       std::size_t cell = static_cast<std::size_t>(line * step + side * side_step);

@@ -22,37 +22,52 @@ namespace {
 
 // ---- depth maps ----------------------------------------------------------------------------
 
-// A piece of a shell, 3 mm thick, in triangles of about 1.6 mm, askew.
-const TriangleSoup& segment() {
-  static const TriangleSoup kSegment = [] {
+// A piece of a shell, 3 mm thick, in triangles of about 1.6 mm, in many rotations: the packer draws
+// each once, and a processor that is shown one of them again remembers what its branches did.
+const std::vector<TriangleSoup>& segments() {
+  static const std::vector<TriangleSoup> kSegments = [] {
     Random random(7);
-    return to_soup(
-        shapes::turned(shapes::sphere_patch(50, 3, 0, 50), shapes::any_rotation(random)));
+    const Mesh segment = shapes::sphere_patch(50, 3, 0, 50);
+    std::vector<TriangleSoup> turned;
+    for (int i = 0; i < 20; ++i)
+      turned.push_back(to_soup(shapes::turned(segment, shapes::any_rotation(random))));
+    return turned;
   }();
-  return kSegment;
+  return kSegments;
 }
 
 void count_triangles(benchmark::State& state) {
-  state.SetItemsProcessed(state.iterations() *
-                          static_cast<std::int64_t>(segment().triangles.size()));
+  state.SetItemsProcessed(
+      state.iterations() *
+      static_cast<std::int64_t>(segments().size() * segments().front().triangles.size()));
 }
 
 void depth_maps(benchmark::State& state, double grid_mm) {
-  for (auto step : state) benchmark::DoNotOptimize(draw_depth_maps(segment(), grid_mm, 0));
+  for (auto step : state)
+    for (const TriangleSoup& segment : segments())
+      benchmark::DoNotOptimize(draw_depth_maps(segment, grid_mm, 0));
   count_triangles(state);
 }
 
-// All of OSMesa's threads count. The two views that the same maps' bounds and centres need.
+// The two views that the same maps' bounds and centres need. All of OSMesa's threads count.
 void depth_maps_by_osmesa(benchmark::State& state, double grid_mm) {
-  const DepthMaps maps = draw_depth_maps(segment(), grid_mm, 0);
-  const RayLattice rays{maps.x0 * grid_mm, maps.y0 * grid_mm, grid_mm / 2, 2 * maps.width + 1,
-                        2 * maps.height + 1};
-  const DepthTriangles triangles = shapes::depth_triangles(segment());
-  DepthRenderer renderer;
-  for (auto step : state) {
-    benchmark::DoNotOptimize(renderer.from_below(triangles, rays));
-    benchmark::DoNotOptimize(renderer.from_above(triangles, rays));
+  struct View {
+    DepthTriangles triangles;
+    RayLattice rays;
+  };
+  std::vector<View> views;
+  for (const TriangleSoup& segment : segments()) {
+    const DepthMaps maps = draw_depth_maps(segment, grid_mm, 0);
+    views.push_back({shapes::depth_triangles(segment),
+                     {maps.x0 * grid_mm, maps.y0 * grid_mm, grid_mm / 2, 2 * maps.width + 1,
+                      2 * maps.height + 1}});
   }
+  DepthRenderer renderer;
+  for (auto step : state)
+    for (const View& view : views) {
+      benchmark::DoNotOptimize(renderer.from_below(view.triangles, view.rays));
+      benchmark::DoNotOptimize(renderer.from_above(view.triangles, view.rays));
+    }
   count_triangles(state);
 }
 
