@@ -62,9 +62,8 @@ std::vector<CellPoint> in_cells(const std::vector<Vec3>& points, double grid,
   return result;
 }
 
-// The corners of a triangle from low to high along one axis, and how far its sides step along the
-// other axis and along z for a step along the first. A side between two corners is computed from
-// the lower one whatever triangle it belongs to, so that neighbours meet without a gap.
+// The corners of a triangle from low to high along one axis. Where a side lies is computed from its
+// lower end whatever triangle it belongs to, so that neighbours meet without a gap.
 template <double CellPoint::*kAlong, double CellPoint::*kAcross>
 struct SortedTriangle {
   struct Place {
