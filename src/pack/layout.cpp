@@ -23,8 +23,8 @@ bool Layouter::put(FilledTray& tray, const Task& task, const RotationChoice& rot
   if (tray.closed) return false;
   const std::vector<const RotatedPart*> tried =
       task.rotated ? std::vector{task.rotated} : rotations(*task.part);
-  const std::optional<Spot> spot = best_spot(tray.state, tried, task.part->volume_mm3, spec_,
-                                             {on_plate_only, task.x, task.y});
+  const std::optional<Spot> spot =
+      best_spot(tray.state, tried, task.part->volume_mm3, spec_, {on_plate_only, task.x, task.y});
   if (!spot) return false;
   const RotatedPart* rotated = tried[static_cast<std::size_t>(spot->rotation)];
   tray.state.put(*rotated, spot->x, spot->y, spot->z, spot->support_mm3, task.part->volume_mm3,
@@ -71,7 +71,8 @@ std::optional<Layout> Layouter::carried_out(const Draft& draft, const RotationCh
     });
     if (!found) {
       trays.push_back(std::make_shared<FilledTray>(spec_));
-      if (!put(*trays.back(), task, rotations, on_plate_only)) put_off_grid(*trays.back(), *task.part);
+      if (!put(*trays.back(), task, rotations, on_plate_only))
+        put_off_grid(*trays.back(), *task.part);
     }
     if (bound(trays) > give_up_above) return std::nullopt;
   }

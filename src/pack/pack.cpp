@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kGapTolerance_mm = 1e-6;
 constexpr int kRepairs = 6;
-constexpr double kFinestShare = 0.25;     // of grid_mm: the grid of the last refinement
+constexpr double kFinestShare = 0.25;  // of grid_mm: the grid of the last refinement
 constexpr int kFinestPasses = 3;
-constexpr double kAboutEqual = 1.005;     // costs: the layout of fewest parts is taken
+constexpr double kAboutEqual = 1.005;  // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_settings(const PackProblem& problem) {
@@ -110,9 +110,8 @@ Packing packing_of(const Layout& layout, const PartMaker& maker, const PackProbl
   Packing packing;
   for (std::size_t tray = 0; tray < layout.trays.size(); ++tray)
     for (const Placed& placed : layout.trays[tray]->placed) {
-      const Pose pose = placed.off_grid
-                            ? corner_pose(problem, *placed.part)
-                            : maker.pose(*placed.rotated, placed.x, placed.y, placed.z);
+      const Pose pose = placed.off_grid ? corner_pose(problem, *placed.part)
+                                        : maker.pose(*placed.rotated, placed.x, placed.y, placed.z);
       packing.parts.push_back({placed.part->items, pose, static_cast<int>(tray)});
       keep_inside(packing.parts.back(), problem);
     }
@@ -156,8 +155,8 @@ Packing finished(const PackProblem& problem, const Layout& found, const Grid& gr
   Workshop finest(problem, grid_of(problem, problem.grid_mm * kFinestShare, true, margin_mm), pace);
   layout = refined(layout, placing.spec.grid, finest.layouter, finest.maker, problem.grid_mm);
   for (int pass = 1; pass < kFinestPasses; ++pass) {
-    Layout again = refined(layout, finest.spec.grid, finest.layouter, finest.maker,
-                           problem.grid_mm / 2);
+    Layout again =
+        refined(layout, finest.spec.grid, finest.layouter, finest.maker, problem.grid_mm / 2);
     if (again.cost >= layout.cost) break;
     layout = std::move(again);
   }
@@ -214,22 +213,20 @@ void make_items(const PackProblem& problem, PartMaker& maker) {
 Packing pack(const PackProblem& problem, const Progress& progress) {
   check_settings(problem);
   Pace pace(progress, problem.budget_s);
-  Workshop searching(problem, grid_of(problem, std::max(problem.search_grid_mm, problem.grid_mm), false),
-                     pace);
+  Workshop searching(
+      problem, grid_of(problem, std::max(problem.search_grid_mm, problem.grid_mm), false), pace);
   make_items(problem, searching.maker);
   std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
   layouts.push_back(side_by_side(problem, searching));
 
   std::vector<Packing> packings(layouts.size());
-  for (auto& l : layouts) fprintf(stderr,"D layout %d cost %.3f\n", l.parts(), l.cost);
   for (std::size_t i = 0; i < layouts.size(); ++i) {
     packings[i] = finished(problem, layouts[i], searching.spec.grid, 0, pace);
-    fprintf(stderr,"D finished %d cost %.3f Vs %.0f t %.2f\n", (int)packings[i].parts.size(), packings[i].cost, packings[i].trays[0].support_mm3, pace.passed());
     pace.reached(0.8 + 0.15 * static_cast<double>(i + 1) / static_cast<double>(layouts.size()));
   }
-  const auto cheapest = std::min_element(
-      packings.begin(), packings.end(),
-      [](const Packing& a, const Packing& b) { return a.cost < b.cost; });
+  const auto cheapest =
+      std::min_element(packings.begin(), packings.end(),
+                       [](const Packing& a, const Packing& b) { return a.cost < b.cost; });
   std::size_t chosen = static_cast<std::size_t>(cheapest - packings.begin());
   const double limit = std::min(kAboutEqual * cheapest->cost, packings.back().cost);
   for (std::size_t i = 0; i < packings.size(); ++i)

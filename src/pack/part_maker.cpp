@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -14,12 +15,36 @@ namespace {
 
 constexpr double kMostCellsFromCentre = 30000;  // HeightCell counts them in 16 bits
 constexpr int kColumnsAcross = 64;              // enough to rank ways up
+constexpr int kSpreadWays = 80;                 // about 25 degrees apart
+constexpr std::size_t kMemberWays = 3;
+constexpr std::size_t kRefinedWays = 3;
+constexpr double kRefineFrom = 0.2;  // radians
+constexpr double kRefineTo = 0.01;
 
 std::array<std::int64_t, 9> key_of(const Mat3& rotation) {
   std::array<std::int64_t, 9> key{};
   for (int i = 0; i < 9; ++i)
     key[static_cast<std::size_t>(i)] = std::llround(rotation(i / 3, i % 3) * 1e9);
   return key;
+}
+
+struct EnvelopeSupport {
+  double below_mm3 = 0;   // under the lowest matter
+  double inside_mm3 = 0;  // between the part's own surfaces
+};
+
+// At 0 degrees V_s = (volume under the upper envelope) - (volume of matter), whatever lies inside.
+EnvelopeSupport envelope_support(const DepthMaps& maps, double volume_mm3, double cell_mm) {
+  const double lowest = maps.box.min().z();
+  double below = 0;
+  double between = 0;
+  for (std::size_t at = 0; at < maps.roof.size(); ++at) {
+    if (maps.roof[at] == kNothingBelow) continue;
+    below += maps.bottom[at] - lowest;
+    between += maps.roof[at] - maps.bottom[at];
+  }
+  const double cell = cell_mm * cell_mm;
+  return {below * cell, std::max(0.0, between * cell - volume_mm3)};
 }
 
 TriangleSoup turned(TriangleSoup surface, const Mat3& rotation) {
@@ -112,51 +137,73 @@ const Part* PartMaker::make(const ItemSet& items) {
 std::vector<WayUp> PartMaker::ways_of(const Part& part) {
   const std::vector<TriangleSoup> shapes = surfaces(part.items);
   std::vector<WayUp> ways;
-  for (const Mat3& base : rotation_set_.ways_up) {
+  const auto add = [&](const Mat3& base) {
     tick_();
     const auto turn = best_turn(shapes, base, rotation_set_.turns, problem_);
-    if (turn) ways.push_back(measured(part, base, turn->turn, turn->size_mm));
-  }
+    if (turn) ways.push_back(measured(part, shapes, base, *turn));
+    return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
+  };
+  for (const Mat3& base : rotation_set_.ways_up) add(base);
+  if (problem_.rotation_step > 0) add_own_ways(part, add);
   if (ways.empty()) {
     const auto found = way_up_that_fits(shapes, problem_);
-    if (found) ways.push_back(measured(part, found->rotation, 0, found->size_mm));
+    if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}));
   }
   std::stable_sort(ways.begin(), ways.end(),
                    [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
   return ways;
 }
 
-WayUp PartMaker::measured(const Part& part, const Mat3& base, double turn, const Vec3& size_mm) {
-  WayUp way{base, turn, 0, 0, 0, size_mm};
-  if (problem_.support_angle <= 0) {
-    // V_s = (volume under the upper envelope) - (volume of matter), whatever lies inside.
-    const DepthMaps maps = part_maps(part.items, base, true);
-    const double lowest = maps.box.min().z();
-    double envelope = 0;
-    double below = 0;
-    for (std::size_t at = 0; at < maps.roof.size(); ++at) {
-      if (maps.roof[at] == kNothingBelow) continue;
-      envelope += maps.roof[at] - lowest;
-      below += maps.bottom[at] - lowest;
-    }
-    const double cell = grid_.cell_mm * grid_.cell_mm;
-    way.support_mm3 = std::max(below * cell, envelope * cell - part.volume_mm3);
-    way.inside_support_mm3 = way.support_mm3 - below * cell;
+// Beside the rotation set: the part's own best ways up, which no fixed step hits. Directions spread
+// over the sphere first (for a merged part: its members' best), then the best of them refined.
+void PartMaker::add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add) {
+  std::vector<std::pair<double, Mat3>> tried;
+  const auto attempt = [&](const Mat3& base) { tried.emplace_back(add(base), base); };
+  if (part.items.size() == 1) {
+    for (const Mat3& base : spread_ways(kSpreadWays)) attempt(base);
   } else {
-    std::vector<TriangleSoup> standing = surfaces(part.items);
-    Box3 box;
-    for (TriangleSoup& surface : standing) {
-      surface = turned(std::move(surface), base);
-      for (const Vec3& point : surface.points) box.extend(point);
+    for (const int item : part.items) {
+      const Part* member = make({item});
+      for (std::size_t i = 0; member && i < std::min(kMemberWays, member->ways.size()); ++i)
+        attempt(member->ways[i].base);
     }
-    const double step =
-        std::max(grid_.cell_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
+  }
+  std::stable_sort(tried.begin(), tried.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  const std::size_t refined = std::min(tried.size(), kRefinedWays);
+  for (std::size_t i = 0; i < refined; ++i) {
+    auto best = tried[i];
+    for (double reach = kRefineFrom; reach > kRefineTo; reach /= 2)
+      for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+        const Mat3 base = Eigen::AngleAxisd(reach, axis).toRotationMatrix() * best.second;
+        const double cost = add(base);
+        if (cost < best.first) best = {cost, base};
+      }
+  }
+}
+
+WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& shapes,
+                          const Mat3& base, const Turn& turn) {
+  WayUp way{base, turn.turn, 0, 0, 0, turn.size_mm};
+  if (problem_.support_angle <= 0) {
+    const DepthMaps maps = part_maps(part.items, base, false);
+    const EnvelopeSupport support = envelope_support(maps, part.volume_mm3, grid_.cell_mm);
+    way.support_mm3 = support.below_mm3 + support.inside_mm3;
+    way.inside_support_mm3 = support.inside_mm3;
+  } else {
+    std::vector<TriangleSoup> standing;
+    Box3 box;
+    for (const TriangleSoup& shape : shapes) {
+      standing.push_back(turned(shape, base));
+      for (const Vec3& point : standing.back().points) box.extend(point);
+    }
+    const double step = std::max(grid_.cell_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
     const ColumnSupport support =
         column_support(standing, step, problem_.support_angle, box.min().z());
     way.support_mm3 = support.below + support.inside;
     way.inside_support_mm3 = support.inside;
   }
-  way.cost = problem_.cost.evaluate({size_mm, way.support_mm3, part.volume_mm3, 1});
+  way.cost = problem_.cost.evaluate({turn.size_mm, way.support_mm3, part.volume_mm3, 1});
   return way;
 }
 
@@ -185,7 +232,10 @@ const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& rotation,
     made->rotation = rotation;
     made->shift = Vec3(-maps.x0 * grid_.cell_mm, -maps.y0 * grid_.cell_mm, -maps.box.min().z()) -
                   rotation * centres_[static_cast<std::size_t>(part.model)];
-    made->inside_support_mm3 = inside_support_mm3;
+    made->inside_support_mm3 =
+        problem_.support_angle <= 0
+            ? envelope_support(maps, part.volume_mm3, grid_.cell_mm).inside_mm3
+            : inside_support_mm3;
   }
   const std::lock_guard lock(mutex_);
   return usable(rotated_.emplace(key, std::move(made)).first->second);

@@ -41,7 +41,8 @@ class PartMaker {
   const RotatedPart* rotated(const Part& part, std::size_t way, std::size_t turn);
   std::size_t turns() const { return rotation_set_.turns.size(); }
 
-  // The part in any rotation; the part may be another maker's. nullptr as above.
+  // The part in any rotation; the part may be another maker's. The inside support is the caller's
+  // where the maps do not tell it. nullptr as above.
   const RotatedPart* rotated(const Part& part, const Mat3& rotation, double inside_support_mm3);
 
   const Grid& grid() const { return grid_; }
@@ -59,7 +60,9 @@ class PartMaker {
   DepthMaps part_maps(const ItemSet& items, const Mat3& rotation, bool keep);
   std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation, bool keep);
   std::vector<WayUp> ways_of(const Part& part);
-  WayUp measured(const Part& part, const Mat3& base, double turn, const Vec3& size_mm);
+  void add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add);
+  WayUp measured(const Part& part, const std::vector<TriangleSoup>& shapes, const Mat3& base,
+                 const Turn& turn);
   std::vector<TriangleSoup> surfaces(const ItemSet& items) const;
 
   const PackProblem& problem_;

@@ -93,9 +93,7 @@ std::int64_t largest(std::int64_t most, const Passes& passes) {
   return low;
 }
 
-auto rank(const Spot& spot) {
-  return std::tuple(spot.cost, spot.z, spot.y, spot.x, spot.rotation);
-}
+auto rank(const Spot& spot) { return std::tuple(spot.cost, spot.z, spot.y, spot.x, spot.rotation); }
 
 // All positions of one rotation.
 class Scan {
@@ -111,8 +109,10 @@ class Scan {
         rating_(tray, part, volume_mm3, spec) {}
 
   void run() {
-    const Range xs = intersection(intersection(inside_tray(part_, spec_, 0), reachable(0)), rules_.x);
-    const Range ys = intersection(intersection(inside_tray(part_, spec_, 1), reachable(1)), rules_.y);
+    const Range xs =
+        intersection(intersection(inside_tray(part_, spec_, 0), reachable(0)), rules_.x);
+    const Range ys =
+        intersection(intersection(inside_tray(part_, spec_, 1), reachable(1)), rules_.y);
     if (xs.empty() || ys.empty() || part_.rise > spec_.ceiling()) return;
     least_x_ = rating_.least_growth(xs, 0);
     least_y_ = rating_.least_growth(ys, 1);
@@ -228,9 +228,8 @@ Range inside_tray(const RotatedPart& part, const TraySpec& spec, int axis) {
   return {0, static_cast<int>(std::floor(room / spec.grid.cell_mm))};
 }
 
-std::optional<Spot> best_spot(const TrayState& tray,
-                              std::span<const RotatedPart* const> rotations, double volume_mm3,
-                              const TraySpec& spec, const PlaceRules& rules) {
+std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart* const> rotations,
+                              double volume_mm3, const TraySpec& spec, const PlaceRules& rules) {
   std::optional<Spot> best;
   for (std::size_t i = 0; i < rotations.size(); ++i)
     Scan(tray, *rotations[i], static_cast<int>(i), volume_mm3, spec, rules, best).run();

@@ -44,8 +44,8 @@ Range inside_tray(const RotatedPart& part, const TraySpec& spec, int axis);
 // y, x and rotation, so the answer is always the same one. What is skipped is skipped for a proven
 // reason only: a bound of its cost exceeds the best so far. Empty where the part has no place on
 // this tray.
-std::optional<Spot> best_spot(const TrayState& tray,
-                              std::span<const RotatedPart* const> rotations, double volume_mm3,
-                              const TraySpec& spec, const PlaceRules& rules = {});
+std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart* const> rotations,
+                              double volume_mm3, const TraySpec& spec,
+                              const PlaceRules& rules = {});
 
 }  // namespace packmerger

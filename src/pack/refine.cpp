@@ -31,11 +31,10 @@ Draft drafted(const Layout& layout, const Grid& from, const Grid& to, PartMaker&
         wanted.tasks.push_back({placed.part});
         continue;
       }
-      wanted.tasks.push_back({placed.part, now,
-                              window(placed.x, was->shift.x(), now->shift.x(), from.cell_mm,
-                                     to.cell_mm, reach_mm),
-                              window(placed.y, was->shift.y(), now->shift.y(), from.cell_mm,
-                                     to.cell_mm, reach_mm)});
+      wanted.tasks.push_back(
+          {placed.part, now,
+           window(placed.x, was->shift.x(), now->shift.x(), from.cell_mm, to.cell_mm, reach_mm),
+           window(placed.y, was->shift.y(), now->shift.y(), from.cell_mm, to.cell_mm, reach_mm)});
     }
     draft.trays.push_back(std::move(wanted));
   }
@@ -61,9 +60,8 @@ Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartM
   const std::array<double, 2> reaches{0, reach_mm};
   std::array<Layout, 2> layouts;
   parallel_for(reaches.size(), [&](std::size_t i) {
-    layouts[i] = *to.carried_out(
-        drafted(layout, from, to.spec().grid, maker, reaches[i]), the_same,
-        std::numeric_limits<double>::infinity());
+    layouts[i] = *to.carried_out(drafted(layout, from, to.spec().grid, maker, reaches[i]), the_same,
+                                 std::numeric_limits<double>::infinity());
   });
   return layouts[1].cost < layouts[0].cost ? layouts[1] : layouts[0];
 }

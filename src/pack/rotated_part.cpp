@@ -9,8 +9,8 @@ namespace packmerger {
 namespace {
 
 constexpr double kFinestUnit_mm = 1.0 / 64;
-constexpr double kMostUnits = 16000;  // sums of two stay in 16 bits
-constexpr float kSlack_units = 4e-3F;      // what single precision may lose of a height
+constexpr double kMostUnits = 16000;   // sums of two stay in 16 bits
+constexpr float kSlack_units = 4e-3F;  // what single precision may lose of a height
 constexpr double kRounding_units = 1e-6;
 
 Height rounded_down(float units) { return static_cast<Height>(std::floor(units)); }
@@ -45,8 +45,7 @@ std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth
           static_cast<float>(std::sqrt(grid.gap_mm * grid.gap_mm - distance * distance)) * per_mm;
       for (int row = 0; row < maps.height; ++row) {
         const float* from = &low[static_cast<std::size_t>(row * maps.width)];
-        float* to =
-            &grown[static_cast<std::size_t>((row + dy + growth) * width + dx + growth)];
+        float* to = &grown[static_cast<std::size_t>((row + dy + growth) * width + dx + growth)];
         for (int column = 0; column < maps.width; ++column)
           to[column] = std::min(to[column], (from[column] - lowest) * per_mm - further);
       }

@@ -66,4 +66,16 @@ RotationSet rotation_set(double step) {
   return set;
 }
 
+std::vector<Mat3> spread_ways(int count) {
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Mat3> ways;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count;
+    const double radius = std::sqrt(1 - z * z);
+    const Vec3 up(radius * std::cos(golden * i), radius * std::sin(golden * i), z);
+    ways.push_back(Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()).toRotationMatrix());
+  }
+  return ways;
+}
+
 }  // namespace packmerger

@@ -19,6 +19,9 @@ struct RotationSet {
 // step: radians; 0 or less: the identity alone.
 RotationSet rotation_set(double step);
 
+// Ways up whose up directions are spread evenly over the sphere (a Fibonacci lattice).
+std::vector<Mat3> spread_ways(int count);
+
 // Exact at multiples of 90°, so that boxes stay boxes.
 Mat3 turn_about_z(double angle);
 

@@ -5,7 +5,6 @@
 #include <deque>
 #include <limits>
 #include <map>
-#include <cstdio>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -14,12 +13,12 @@ namespace packmerger {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSearchShare = 0.8;       // of the packing's progress, and of its budget
-constexpr int kKicks = 5;                  // without a better layout before the search ends
+constexpr double kSearchShare = 0.8;  // of the packing's progress, and of its budget
+constexpr int kKicks = 5;             // without a better layout before the search ends
 constexpr int kKickMoves = 2;
-constexpr double kDetour = 1.02;           // dearer than the best so far a layout on the way may be
-constexpr std::size_t kStartWays = 6;      // ways up in every turn for the first layout
-constexpr double kWorthKeeping = 1.05;     // of the cheapest cost
+constexpr double kDetour = 1.02;        // dearer than the best so far a layout on the way may be
+constexpr std::size_t kStartWays = 6;   // ways up in every turn for the first layout
+constexpr double kWorthKeeping = 1.05;  // of the cheapest cost
 constexpr std::size_t kMostKept = 3;
 
 void lower(std::atomic<double>& least, double value) {
@@ -44,9 +43,7 @@ class TabuSearch {
     int kicks = 0;
     while (!over()) {
       const double before = best_.cost;
-      fprintf(stderr,"D start %.3f\n", current.cost);
       descend(current);
-      fprintf(stderr,"D kick %d best %.3f parts %d moves %d\n", kicks, best_.cost, best_.parts(), evals_);
       kicks = best_.cost < before ? 0 : kicks + 1;
       if (kicks > kKicks || over()) break;
       current = kicked(best_);
@@ -125,7 +122,6 @@ class TabuSearch {
   // does not depend on the threads.
   std::vector<std::optional<Layout>> carried_out(const std::vector<Move>& moves) {
     std::vector<std::optional<Layout>> layouts(moves.size());
-    evals_ += (int)moves.size();
     std::atomic<double> least = kInfinity;
     parallel_for(moves.size(), [&](std::size_t i) {
       pace_.tick();
@@ -167,7 +163,7 @@ class TabuSearch {
   Moves moves_;
   Pace& pace_;
   Random random_;
-  Layout best_; int evals_=0;
+  Layout best_;
   std::map<int, Layout> cheapest_;  // by number of parts
 };
 

@@ -40,7 +40,7 @@ struct TraySpec {
 
   int columns() const;
   int rows() const;
-  int growth() const;       // of every part's `reach`, cells
+  int growth() const;      // of every part's `reach`, cells
   Height ceiling() const;  // highest z of matter, units
 };
 

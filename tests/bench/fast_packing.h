@@ -1,5 +1,5 @@
-// One packing by the packer's own placement (src/pack/place.h) on the reference's maps, so that both
-// can be compared on the same ground.
+// One packing by the packer's own placement (src/pack/place.h) on the reference's maps, so that
+// both can be compared on the same ground.
 #pragma once
 
 #include <vector>
