@@ -148,7 +148,6 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
   problem.rotation_step = radians(profile.pack.rotation_step_deg);
   problem.support_angle = radians(profile.support_angle_deg);
   problem.search_grid_mm = profile.pack.search_grid_mm;
-  problem.search_rotation_step = radians(profile.pack.search_rotation_step_deg);
   problem.cost = packing_cost(profile);
   problem.tabu_memory = profile.pack.tabu_memory;
   problem.tabu_patience = profile.pack.tabu_patience;

@@ -44,12 +44,11 @@ struct PackProblem {
   double grid_mm = 1;               // cell of the height field in the answer
   double rotation_step = 0;         // radians, about each of the three axes
   double support_angle = 0;         // radians below the horizontal; 0: every down-facing facet
-  double search_grid_mm = 4;        // cell of the height field while orders are searched
-  double search_rotation_step = 0;  // radians, while orders are searched
+  double search_grid_mm = 2;        // cell of the height field while layouts are searched
   Cost cost;
   int tabu_memory = 3;     // m: rounds a move stays forbidden
   int tabu_patience = 10;  // rounds without a better order before the search ends
-  int tabu_samples = 8;    // swaps tried in one round
+  int tabu_samples = 8;    // moves tried in one round
   double budget_s = 0;     // 0: until the search ends by itself
   std::uint64_t seed = 1;
 };

@@ -43,13 +43,12 @@ struct PackSettings {
   double gap_mm = 1;
   double grid_mm = 1;
   double rotation_step_deg = 30;
-  Objective objective = Objective::kPaper;
+  Objective objective = Objective::kPrinter;
   double weight = 0.75;  // w of equation (1)
   int tabu_memory = 3;
   int tabu_patience = 10;
   int tabu_samples = 8;
-  double search_grid_mm = 4;
-  double search_rotation_step_deg = 90;
+  double search_grid_mm = 2;
 };
 
 // docs/ESTIMATES gives the formulas.

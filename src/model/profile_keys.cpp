@@ -121,15 +121,13 @@ void add_pack(PackSettings& s, std::vector<Key>& keys) {
         "the height."},
        {"weight", NumberKey{&s.weight, from_to(0, 1)}, "", "w of the paper's objective."},
        {"tabu_memory", IntegerKey{&s.tabu_memory, from_to(0, 1000)}, "rounds",
-        "How long a swap stays forbidden."},
+        "How long a part that was moved is left alone."},
        {"tabu_patience", IntegerKey{&s.tabu_patience, from_to(1, 100000)}, "rounds",
-        "The search ends after this many rounds without a better order."},
-       {"tabu_samples", IntegerKey{&s.tabu_samples, from_to(1, 100000)}, "swaps",
-        "Swaps tried in one round."},
+        "The search starts afresh after this many rounds without a better layout."},
+       {"tabu_samples", IntegerKey{&s.tabu_samples, from_to(1, 100000)}, "moves",
+        "Moves tried in one round."},
        {"search_grid_mm", NumberKey{&s.search_grid_mm, from_to(0.1, 50)}, "mm",
-        "The cell of the height field while orders are searched."},
-       {"search_rotation_step_deg", NumberKey{&s.search_rotation_step_deg, from_to(5, 360)},
-        "degrees", "Rotations tried while orders are searched."}});
+        "The cell of the height field while layouts are searched."}});
 }
 
 void add_polyjet(PolyjetSettings& s, std::vector<Key>& keys) {

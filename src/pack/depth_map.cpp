@@ -251,6 +251,32 @@ DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double su
   return maps;
 }
 
+DepthMaps draw_sampled_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
+  const DepthMaps fine = draw_depth_maps(surface, grid_mm / 2, support_angle);
+  const auto half = [](int cells) { return cells >= 0 ? cells / 2 : (cells - 1) / 2; };
+  DepthMaps maps;
+  maps.box = fine.box;
+  maps.x0 = half(fine.x0);
+  maps.y0 = half(fine.y0);
+  maps.width = half(fine.x0 + fine.width - 1) - maps.x0 + 1;
+  maps.height = half(fine.y0 + fine.height - 1) - maps.y0 + 1;
+  allocate(maps);
+  for (int row = 0; row < fine.height; ++row)
+    for (int column = 0; column < fine.width; ++column) {
+      const int x = fine.x0 + column;
+      const int y = fine.y0 + row;
+      const std::size_t from = at(fine, column, row);
+      const std::size_t to = at(maps, half(x) - maps.x0, half(y) - maps.y0);
+      maps.low[to] = std::min(maps.low[to], fine.bottom[from]);
+      maps.top[to] = std::max(maps.top[to], fine.roof[from]);
+      if ((x & 1) != 0 || (y & 1) != 0) continue;
+      maps.bottom[to] = fine.bottom[from];
+      maps.roof[to] = fine.roof[from];
+      maps.hangs[to] = fine.hangs[from];
+    }
+  return maps;
+}
+
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters) {
   DepthMaps turned = maps;
   for (int i = 0; i < quarters; ++i) turned = once_turned(turned);

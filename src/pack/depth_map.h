@@ -34,6 +34,12 @@ struct DepthMaps {
 // support_angle (radians) below the horizontal.
 DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
 
+// The surface as a search on coarse cells sees it: `low` and `top` are the least and greatest of
+// samples at a quarter of a cell to both sides of the centre, so that matter takes half a cell more
+// room than it has, which on average is room for a gap of that width; the samples are taken a
+// quarter of a cell off the centre.
+DepthMaps draw_sampled_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
+
 // The same item turned by quarters × 90° about z: cells map to cells.
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters);
 

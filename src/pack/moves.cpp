@@ -59,6 +59,22 @@ void take_out(Draft& draft, const Layout& layout, const std::vector<const Part*>
   }
 }
 
+// The pairs of parts that may become one.
+std::vector<std::pair<const Part*, const Part*>> neighbours(const Layout& layout,
+                                                            const PackProblem& problem) {
+  if (problem.edges.empty()) return {};
+  std::vector<const Part*> parts;
+  std::vector<ItemSet> sets;
+  for (const Place& place : places(layout)) {
+    parts.push_back(part_at(layout, place));
+    sets.push_back(parts.back()->items);
+  }
+  std::vector<std::pair<const Part*, const Part*>> pairs;
+  for (const auto& [a, b] : mergeable_pairs(sets, problem))
+    pairs.emplace_back(parts[static_cast<std::size_t>(a)], parts[static_cast<std::size_t>(b)]);
+  return pairs;
+}
+
 // From here on in the order, parts keep their rotations and look for new places.
 void look_again(std::vector<Task>& tasks, std::size_t first) {
   for (std::size_t i = first; i < tasks.size(); ++i) tasks[i].x = tasks[i].y = kAnywhere;
@@ -177,23 +193,32 @@ Move Moves::turn(const Layout& layout, Random& random) {
 }
 
 // Two neighbours become one part, which is put on top.
-Move Moves::merge(const Layout& layout, Random& random) {
+Move Moves::merge(const Layout& layout, const Part& one, const Part& other) {
   Move move{unchanged(layout), {}, 0};
-  if (problem_.edges.empty()) return move;
-  std::vector<ItemSet> sets;
-  for (const Place& place : places(layout)) sets.push_back(part_at(layout, place)->items);
-  const auto pairs = mergeable_pairs(sets, problem_);
-  if (pairs.empty()) return move;
-  const auto& [a, b] = pairs[random.below(pairs.size())];
-  const Part* one = maker_.make(sets[static_cast<std::size_t>(a)]);
-  const Part* other = maker_.make(sets[static_cast<std::size_t>(b)]);
-  const Part* both = maker_.make(merged(one->items, other->items));
+  const Part* both = maker_.make(merged(one.items, other.items));
   if (both == nullptr) return move;
-  move.touched = {one, other};
+  move.touched = {&one, &other};
   take_out(move.draft, layout, move.touched);
   move.draft.loose.push_back({both});
   move.touched.push_back(both);
   return move;
+}
+
+Move Moves::merge(const Layout& layout, Random& random) {
+  const auto pairs = neighbours(layout, problem_);
+  if (pairs.empty()) return {};
+  const auto& [one, other] = pairs[random.below(pairs.size())];
+  return merge(layout, *one, *other);
+}
+
+std::vector<Move> Moves::merges(const Layout& layout, Random& random) {
+  std::vector<Move> moves;
+  for (const auto& [one, other] : neighbours(layout, problem_)) {
+    Move move = merge(layout, *one, *other);
+    move.seed = random.bits();
+    if (!move.touched.empty()) moves.push_back(std::move(move));
+  }
+  return moves;
 }
 
 // A merged part becomes two again, along a cut between its items.

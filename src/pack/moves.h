@@ -26,6 +26,9 @@ class Moves {
 
   Move draw(const Layout& layout, Random& random);
 
+  // Every merge that is possible here.
+  std::vector<Move> merges(const Layout& layout, Random& random);
+
   // Rotations that a part is tried in: some of its better ways up, each in a random turn.
   std::vector<const RotatedPart*> some_rotations(const Part& part, Random& random);
   // The best few ways up in every turn.
@@ -37,6 +40,7 @@ class Moves {
   Move exchange(const Layout& layout, Random& random);
   Move turn(const Layout& layout, Random& random);
   Move merge(const Layout& layout, Random& random);
+  Move merge(const Layout& layout, const Part& one, const Part& other);
   Move undo_merge(const Layout& layout, Random& random);
 
   const PackProblem& problem_;

@@ -19,9 +19,17 @@ namespace {
 constexpr double kGapTolerance_mm = 1e-6;
 constexpr int kRepairs = 6;
 constexpr double kFinestShare = 0.25;  // of grid_mm: the grid of the last refinement
+constexpr double kMostCells = 4e6;  // of a tray
+constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
 constexpr double kAboutEqual = 1.005;  // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The last refinement's, coarser on a tray so large that it would take too much memory.
+double finest_cell_mm(const PackProblem& problem) {
+  return std::max(problem.grid_mm * kFinestShare,
+                  std::sqrt(problem.build_mm.x() * problem.build_mm.y() / kMostCells));
+}
 
 void check_settings(const PackProblem& problem) {
   const auto refuse = [](const std::string& what, const char* hint) {
@@ -33,11 +41,13 @@ void check_settings(const PackProblem& problem) {
   if (!(problem.gap_mm >= 0)) refuse("The gap must not be negative", "Set gap_mm to 0 or more.");
   if (!(problem.build_mm.minCoeff() > 0))
     refuse("The build volume is empty", "Set build_mm to the printer's size.");
-  constexpr double kMostCells = 4e6;
-  if (problem.build_mm.x() * problem.build_mm.y() / (problem.grid_mm * problem.grid_mm) >
-          kMostCells ||
-      problem.build_mm.head<2>().maxCoeff() / problem.grid_mm > 4000)
+  const double cell_mm = finest_cell_mm(problem);
+  const double widest_mm = problem.build_mm.head<2>().maxCoeff();
+  if (cell_mm > problem.grid_mm || widest_mm / cell_mm > kMostCellsAcross)
     refuse("The packer's grid is too fine for this build volume", "Set a larger grid_mm.");
+  for (const PackItem& item : problem.items)
+    if (bounding_box(item.surface).sizes().norm() / cell_mm > kMostCellsAcross)
+      refuse("The packer's grid is too fine for a model of this size", "Set a larger grid_mm.");
 }
 
 Mesh placed_mesh(const PackProblem& problem, const PlacedPart& part) {
@@ -152,7 +162,7 @@ Packing finished(const PackProblem& problem, const Layout& found, const Grid& gr
                  double margin_mm, Pace& pace) {
   Workshop placing(problem, grid_of(problem, problem.grid_mm, true, margin_mm), pace);
   Layout layout = refined(found, grid, placing.layouter, placing.maker, grid.cell_mm);
-  Workshop finest(problem, grid_of(problem, problem.grid_mm * kFinestShare, true, margin_mm), pace);
+  Workshop finest(problem, grid_of(problem, finest_cell_mm(problem), true, margin_mm), pace);
   layout = refined(layout, placing.spec.grid, finest.layouter, finest.maker, problem.grid_mm);
   for (int pass = 1; pass < kFinestPasses; ++pass) {
     Layout again =

@@ -6,14 +6,12 @@
 #include <numeric>
 #include <utility>
 
-#include "base/error.h"
 #include "base/no_height.h"
 #include "pack/columns.h"
 
 namespace packmerger {
 namespace {
 
-constexpr double kMostCellsFromCentre = 30000;  // HeightCell counts them in 16 bits
 constexpr int kColumnsAcross = 64;              // enough to rank ways up
 constexpr int kSpreadWays = 80;                 // about 25 degrees apart
 constexpr std::size_t kMemberWays = 3;
@@ -73,9 +71,6 @@ PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function
     std::vector<double> look;
     for (Vec3& point : shape.surface.points) {
       point -= centres_[static_cast<std::size_t>(problem.items[i].model)];
-      if (point.norm() / grid_.cell_mm > kMostCellsFromCentre)
-        throw Error(Fault::kUsage, "The packer's grid is too fine for a model of this size",
-                    "Set a larger grid_mm.");
       look.insert(look.end(), {point.x(), point.y(), point.z()});
     }
     for (const auto& [a, b, c] : shape.surface.triangles)
@@ -99,9 +94,10 @@ std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation,
     const auto found = maps_.find(key);
     if (found != maps_.end()) return found->second;
   }
+  const TriangleSoup surface = turned(shapes_[static_cast<std::size_t>(twin)].surface, rotation);
   auto drawn = std::make_shared<const DepthMaps>(
-      draw_depth_maps(turned(shapes_[static_cast<std::size_t>(twin)].surface, rotation),
-                      grid_.cell_mm, problem_.support_angle));
+      grid_.bounds ? draw_depth_maps(surface, grid_.cell_mm, problem_.support_angle)
+                   : draw_sampled_maps(surface, grid_.cell_mm, problem_.support_angle));
   if (!keep) return drawn;
   const std::lock_guard lock(mutex_);
   return maps_.emplace(key, std::move(drawn)).first->second;
@@ -144,7 +140,7 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
   };
   for (const Mat3& base : rotation_set_.ways_up) add(base);
-  if (problem_.rotation_step > 0) add_own_ways(part, add);
+  if (rotation_set_.ways_up.size() > 1) add_own_ways(part, add);
   if (ways.empty()) {
     const auto found = way_up_that_fits(shapes, problem_);
     if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}));

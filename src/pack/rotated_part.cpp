@@ -34,7 +34,6 @@ std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth
   const int width = maps.width + 2 * growth;
   const int height = maps.height + 2 * growth;
   const float per_mm = static_cast<float>(1 / grid.unit_mm);
-  const std::vector<float>& low = grid.bounds ? maps.low : maps.bottom;
   std::vector<float> grown(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                            kNothingAbove);
   for (int dy = -growth; dy <= growth; ++dy)
@@ -44,7 +43,7 @@ std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth
       const float further =
           static_cast<float>(std::sqrt(grid.gap_mm * grid.gap_mm - distance * distance)) * per_mm;
       for (int row = 0; row < maps.height; ++row) {
-        const float* from = &low[static_cast<std::size_t>(row * maps.width)];
+        const float* from = &maps.low[static_cast<std::size_t>(row * maps.width)];
         float* to = &grown[static_cast<std::size_t>((row + dy + growth) * width + dx + growth)];
         for (int column = 0; column < maps.width; ++column)
           to[column] = std::min(to[column], (from[column] - lowest) * per_mm - further);
@@ -85,7 +84,6 @@ RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
   const float lowest = static_cast<float>(maps.box.min().z());
   const float per_mm = static_cast<float>(1 / grid.unit_mm);
   const std::vector<float> grown = grown_low(maps, grid, part.growth, lowest);
-  const std::vector<float>& top = grid.bounds ? maps.top : maps.roof;
   const float slack = grid.bounds ? kSlack_units : 0;
   const int grown_width = maps.width + 2 * part.growth;
   for (std::size_t at = 0; at < grown.size(); ++at)
@@ -98,8 +96,8 @@ RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
   for (int y = 0; y < maps.height; ++y)
     for (int x = 0; x < maps.width; ++x) {
       const auto at = static_cast<std::size_t>(y * maps.width + x);
-      if (top[at] != kNothingBelow)
-        part.top.push_back(cell(x, y, rounded_up((top[at] - lowest) * per_mm + slack)));
+      if (maps.top[at] != kNothingBelow)
+        part.top.push_back(cell(x, y, rounded_up((maps.top[at] - lowest) * per_mm + slack)));
       if (maps.roof[at] != kNothingBelow)
         part.roof.push_back(cell(x, y, rounded((maps.roof[at] - lowest) * per_mm)));
       if (maps.hangs[at] == 0) continue;

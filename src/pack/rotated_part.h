@@ -32,7 +32,7 @@ struct Grid {
   double unit_mm = 1.0 / 64;
   double gap_mm = 1;
   // What `reach` and `top` hold. Bounds of whole cells, rounded outwards: parts keep their gap
-  // wherever they are put. Samples at the cells' centres: a wall takes the room it takes on
+  // wherever they are put. Or samples (draw_sampled_maps): a wall takes the room it takes on
   // average, so a search on coarse cells sees what a finer grid will make of its layout.
   bool bounds = true;
 };

@@ -49,6 +49,7 @@ class TabuSearch {
       current = kicked(best_);
       progress_of(kicks);
     }
+    merge_on();
     return worth_keeping();
   }
 
@@ -141,6 +142,23 @@ class TabuSearch {
       if (next.front()) layout = std::move(*next.front());
     }
     return layout;
+  }
+
+  // Additional merging (paper, section 6.3): from the best layout on, the merge that costs least, as
+  // long as the result is worth keeping.
+  void merge_on() {
+    Layout layout = best_;
+    while (true) {
+      std::vector<std::optional<Layout>> merged = carried_out(moves_.merges(layout, random_));
+      std::size_t chosen = merged.size();
+      for (std::size_t i = 0; i < merged.size(); ++i)
+        if (merged[i] && (chosen == merged.size() || merged[i]->cost < merged[chosen]->cost))
+          chosen = i;
+      if (chosen == merged.size() || merged[chosen]->cost > kWorthKeeping * best_.cost) break;
+      layout = std::move(*merged[chosen]);
+      keep(layout);
+      if (layout.cost < best_.cost) best_ = layout;
+    }
   }
 
   void keep(const Layout& layout) {

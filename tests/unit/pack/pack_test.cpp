@@ -107,7 +107,6 @@ PackProblem sphere_problem(double radius) {
   }
   problem.build_mm = Vec3(294, 192, 148.6);
   problem.rotation_step = radians(30);
-  problem.search_rotation_step = radians(90);
   problem.cost = shapes::paper_cost();
   return problem;
 }

@@ -29,7 +29,6 @@ inline PackProblem problem_of(std::vector<Mesh> meshes, const Vec3& build_mm) {
   }
   problem.build_mm = build_mm;
   problem.rotation_step = radians(90);
-  problem.search_rotation_step = radians(90);
   problem.search_grid_mm = 3;
   problem.tabu_patience = 2;
   problem.tabu_samples = 3;
