@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kGapTolerance_mm = 1e-6;
 constexpr int kRepairs = 6;
-constexpr double kFinestShare = 0.25;  // of grid_mm: the grid of the last refinement
-constexpr double kMostCells = 4e6;  // of a tray
+constexpr double kFinestShare = 0.25;       // of grid_mm: the grid of the last refinement
+constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
 constexpr double kAboutEqual = 1.005;  // costs: the layout of fewest parts is taken

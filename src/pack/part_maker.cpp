@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 #include <utility>
 
 #include "base/no_height.h"
@@ -12,8 +12,9 @@
 namespace packmerger {
 namespace {
 
-constexpr int kColumnsAcross = 64;              // enough to rank ways up
-constexpr int kSpreadWays = 80;                 // about 25 degrees apart
+constexpr double kQuarter = std::numbers::pi / 2;
+constexpr int kColumnsAcross = 64;  // enough to rank ways up
+constexpr int kSpreadWays = 80;     // about 25 degrees apart
 constexpr std::size_t kMemberWays = 3;
 constexpr std::size_t kRefinedWays = 3;
 constexpr double kRefineFrom = 0.2;  // radians
@@ -24,6 +25,19 @@ std::array<std::int64_t, 9> key_of(const Mat3& rotation) {
   for (int i = 0; i < 9; ++i)
     key[static_cast<std::size_t>(i)] = std::llround(rotation(i / 3, i % 3) * 1e9);
   return key;
+}
+
+// An angle as whole quarters and a rest in [0, quarter), rounded so that equal turns reached in
+// different ways share their maps.
+struct QuartersAndRest {
+  int quarters;
+  double rest;
+};
+
+QuartersAndRest split_turn(double turn) {
+  const double quarters = std::floor(turn / kQuarter + 1e-9);
+  const double rest = std::round(std::max(0.0, turn - quarters * kQuarter) * 1e9) * 1e-9;
+  return {((static_cast<int>(quarters) % 4) + 4) % 4, rest};
 }
 
 struct EnvelopeSupport {
@@ -133,17 +147,18 @@ const Part* PartMaker::make(const ItemSet& items) {
 std::vector<WayUp> PartMaker::ways_of(const Part& part) {
   const std::vector<TriangleSoup> shapes = surfaces(part.items);
   std::vector<WayUp> ways;
-  const auto add = [&](const Mat3& base) {
+  // again: the same way up will be asked for when the part is merged; its maps are kept.
+  const auto add = [&](const Mat3& base, bool again) {
     tick_();
     const auto turn = best_turn(shapes, base, rotation_set_.turns, problem_);
-    if (turn) ways.push_back(measured(part, shapes, base, *turn));
+    if (turn) ways.push_back(measured(part, shapes, base, *turn, again));
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
   };
-  for (const Mat3& base : rotation_set_.ways_up) add(base);
+  for (const Mat3& base : rotation_set_.ways_up) add(base, true);
   if (rotation_set_.ways_up.size() > 1) add_own_ways(part, add);
   if (ways.empty()) {
     const auto found = way_up_that_fits(shapes, problem_);
-    if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}));
+    if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}, false));
   }
   std::stable_sort(ways.begin(), ways.end(),
                    [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
@@ -151,19 +166,19 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
 }
 
 // Beside the rotation set: the part's own best ways up, which no fixed step hits. Directions spread
-// over the sphere first (for a merged part: its members' best), then the best of them refined.
-void PartMaker::add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add) {
-  std::vector<std::pair<double, Mat3>> tried;
-  const auto attempt = [&](const Mat3& base) { tried.emplace_back(add(base), base); };
-  if (part.items.size() == 1) {
-    for (const Mat3& base : spread_ways(kSpreadWays)) attempt(base);
-  } else {
+// over the sphere first, then the best of them refined; a merged part takes its members' best.
+void PartMaker::add_own_ways(const Part& part,
+                             const std::function<double(const Mat3&, bool)>& add) {
+  if (part.items.size() > 1) {
     for (const int item : part.items) {
       const Part* member = make({item});
       for (std::size_t i = 0; member && i < std::min(kMemberWays, member->ways.size()); ++i)
-        attempt(member->ways[i].base);
+        add(member->ways[i].base, true);
     }
+    return;
   }
+  std::vector<std::pair<double, Mat3>> tried;
+  for (const Mat3& base : spread_ways(kSpreadWays)) tried.emplace_back(add(base, false), base);
   std::stable_sort(tried.begin(), tried.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   const std::size_t refined = std::min(tried.size(), kRefinedWays);
@@ -172,17 +187,17 @@ void PartMaker::add_own_ways(const Part& part, const std::function<double(const 
     for (double reach = kRefineFrom; reach > kRefineTo; reach /= 2)
       for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
         const Mat3 base = Eigen::AngleAxisd(reach, axis).toRotationMatrix() * best.second;
-        const double cost = add(base);
+        const double cost = add(base, false);
         if (cost < best.first) best = {cost, base};
       }
   }
 }
 
 WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& shapes,
-                          const Mat3& base, const Turn& turn) {
+                          const Mat3& base, const Turn& turn, bool keep) {
   WayUp way{base, turn.turn, 0, 0, 0, turn.size_mm};
   if (problem_.support_angle <= 0) {
-    const DepthMaps maps = part_maps(part.items, base, false);
+    const DepthMaps maps = part_maps(part.items, base, keep);
     const EnvelopeSupport support = envelope_support(maps, part.volume_mm3, grid_.cell_mm);
     way.support_mm3 = support.below_mm3 + support.inside_mm3;
     way.inside_support_mm3 = support.inside_mm3;
@@ -205,12 +220,18 @@ WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& sha
 
 const RotatedPart* PartMaker::rotated(const Part& part, std::size_t way, std::size_t turn) {
   const WayUp& base = part.ways[way];
-  return rotated(part, turn_about_z(base.turn + rotation_set_.turns[turn]) * base.base,
-                 base.inside_support_mm3);
+  const auto [quarters, rest] = split_turn(base.turn + rotation_set_.turns[turn]);
+  return rotated(part, turn_about_z(rest) * base.base, quarters, base.inside_support_mm3);
 }
 
 const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& rotation,
                                       double inside_support_mm3) {
+  return rotated(part, rotation, 0, inside_support_mm3);
+}
+
+const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& base, int quarters,
+                                      double inside_support_mm3) {
+  const Mat3 rotation = turn_about_z(quarters * kQuarter) * base;
   const std::pair key(part.items, key_of(rotation));
   const auto usable = [](const std::unique_ptr<RotatedPart>& made) {
     return made->top.empty() ? nullptr : made.get();
@@ -221,7 +242,7 @@ const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& rotation,
     if (found != rotated_.end()) return usable(found->second);
   }
   tick_();
-  const DepthMaps maps = part_maps(part.items, rotation, part.items.size() > 1);
+  const DepthMaps maps = quarter_turned(part_maps(part.items, base, !grid_.bounds), quarters);
   auto made = std::make_unique<RotatedPart>();
   if (fits(maps.box.sizes(), problem_.build_mm)) {
     *made = quantised(maps, grid_);

@@ -57,12 +57,14 @@ class PartMaker {
   };
   using RotationKey = std::array<std::int64_t, 9>;
 
+  const RotatedPart* rotated(const Part& part, const Mat3& base, int quarters,
+                             double inside_support_mm3);
   DepthMaps part_maps(const ItemSet& items, const Mat3& rotation, bool keep);
   std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation, bool keep);
   std::vector<WayUp> ways_of(const Part& part);
-  void add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add);
+  void add_own_ways(const Part& part, const std::function<double(const Mat3&, bool)>& add);
   WayUp measured(const Part& part, const std::vector<TriangleSoup>& shapes, const Mat3& base,
-                 const Turn& turn);
+                 const Turn& turn, bool keep);
   std::vector<TriangleSoup> surfaces(const ItemSet& items) const;
 
   const PackProblem& problem_;

@@ -144,8 +144,8 @@ class TabuSearch {
     return layout;
   }
 
-  // Additional merging (paper, section 6.3): from the best layout on, the merge that costs least, as
-  // long as the result is worth keeping.
+  // Additional merging (paper, section 6.3): from the best layout on, the merge that costs least,
+  // as long as the result is worth keeping.
   void merge_on() {
     Layout layout = best_;
     while (true) {
