@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <ranges>
 #include <set>
 
 #include "base/parallel.h"
@@ -50,6 +51,21 @@ FitTest::FitTest(const BuildVolume& build) : build_mm_(build.build_mm) {
   rotations_.assign(different.begin(), different.end());
 }
 
+template <typename Points>
+FitTest::Extents FitTest::extents_of(const Points& points) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Extents extents;
+  extents.low.assign(axes_.size(), kInfinity);
+  extents.high.assign(axes_.size(), -kInfinity);
+  for (const Vec3& point : points)
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const double at = axes_[i].dot(point);
+      extents.low[i] = std::min(extents.low[i], at);
+      extents.high[i] = std::max(extents.high[i], at);
+    }
+  return extents;
+}
+
 std::vector<FitTest::Extents> FitTest::extents(const TetMesh& mesh,
                                                const Segments& segments) const {
   // A segment's extents are those of its points on the surface or on a cut; all will do.
@@ -63,16 +79,8 @@ std::vector<FitTest::Extents> FitTest::extents(const TetMesh& mesh,
     std::vector<int>& list = points[label];
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    Extents& extents = result[label];
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    extents.low.assign(axes_.size(), kInfinity);
-    extents.high.assign(axes_.size(), -kInfinity);
-    for (const int point : list)
-      for (std::size_t i = 0; i < axes_.size(); ++i) {
-        const double at = axes_[i].dot(mesh.points[point]);
-        extents.low[i] = std::min(extents.low[i], at);
-        extents.high[i] = std::max(extents.high[i], at);
-      }
+    result[label] = extents_of(
+        list | std::views::transform([&](int point) -> const Vec3& { return mesh.points[point]; }));
   });
   return result;
 }
@@ -86,6 +94,15 @@ bool FitTest::fits(const Extents& a, const Extents& b) const {
            length(r[1]) <= build_mm_.y() + kRounding_mm &&
            length(r[2]) <= build_mm_.z() + kRounding_mm;
   });
+}
+
+bool FitTest::fits(const std::vector<Vec3>& points) const {
+  Box3 box;
+  for (const Vec3& point : points) box.extend(point);
+  if (box.isEmpty()) return false;
+  if (box.diagonal().norm() <= build_mm_.minCoeff()) return true;  // however it is turned
+  const Extents extents = extents_of(points);
+  return fits(extents, extents);
 }
 
 void FitTest::unite(Extents& into, const Extents& from) {

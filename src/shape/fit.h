@@ -27,9 +27,14 @@ class FitTest {
   std::vector<Extents> extents(const TetMesh& mesh, const Segments& segments) const;
 
   bool fits(const Extents& a, const Extents& b) const;
+  // Of a part that holds these points. False for none.
+  bool fits(const std::vector<Vec3>& points) const;
   static void unite(Extents& into, const Extents& from);
 
  private:
+  template <typename Points>
+  Extents extents_of(const Points& points) const;
+
   Vec3 build_mm_;
   std::vector<Vec3> axes_;                     // without opposites
   std::vector<std::array<int, 3>> rotations_;  // which axes become x, y and z

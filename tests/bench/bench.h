@@ -14,4 +14,7 @@ void add_kernels(CLI::App& program);
 // The paper's packer, simple and slow, on a model's segments.
 void add_reference(CLI::App& program);
 
+// Divisions of a model by planes and by clusters, and how much support their parts need alone.
+void add_partitions(CLI::App& program);
+
 }  // namespace packmerger::bench
