@@ -3,37 +3,47 @@
 #include <utility>
 
 #include "job/arrangement.h"
-#include "shape/premerge.h"
 #include "shape/segment.h"
 #include "shape/smooth_cuts.h"
 #include "shape/solidify.h"
 
 namespace packmerger {
 
-Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
-               Warnings& warnings, const Progress& progress) {
+Divided undivided(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
+                  const Progress& progress) {
   Solidified solid = solidify(surface, profile.shape, hollow_it, warnings, progress);
-  Divided divided;
-  divided.shell = std::move(solid.shell);
-  divided.tets = std::move(solid.tets);
-  divided.resample_tolerance_mm = solid.resample_tolerance_mm;
+  Divided model;
+  model.shell = std::move(solid.shell);
+  model.tets = std::move(solid.tets);
+  model.resample_tolerance_mm = solid.resample_tolerance_mm;
+  return model;
+}
 
-  const Segments clusters = segment(divided.tets, profile.shape, seed, progress);
-  divided.clusters = clusters.count;
+void divide_by_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
+                        Warnings& warnings, const Progress& progress) {
+  const Segments clusters = segment(model.tets, profile.shape, seed, progress);
+  model.clusters = clusters.count;
 
   // Smoothing straightens cuts, which may bring a cross-section below the limit, so merging has the
   // last word, and what it says then is what the user is told.
-  const BuildVolume build{room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
+  const BuildVolume build = build_volume(profile);
   Warnings before_smoothing;
-  divided.segments =
-      premerge(divided.tets, clusters, profile.shape, build, before_smoothing, progress);
-  const CutRoughness roughness =
-      smooth_cuts(divided.tets, divided.segments, profile.shape, progress);
-  divided.segments =
-      premerge(divided.tets, divided.segments, profile.shape, build, warnings, progress);
-  divided.roughness_before = roughness.before_rad;
-  divided.roughness_after = roughness.after_rad;
-  return divided;
+  model.segments = premerge(model.tets, clusters, profile.shape, build, before_smoothing, progress);
+  const CutRoughness roughness = smooth_cuts(model.tets, model.segments, profile.shape, progress);
+  model.segments = premerge(model.tets, model.segments, profile.shape, build, warnings, progress);
+  model.roughness_before = roughness.before_rad;
+  model.roughness_after = roughness.after_rad;
+}
+
+Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
+               Warnings& warnings, const Progress& progress) {
+  Divided model = undivided(surface, profile, hollow_it, warnings, progress);
+  divide_by_clusters(model, profile, seed, warnings, progress);
+  return model;
+}
+
+BuildVolume build_volume(const Profile& profile) {
+  return {room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
 }
 
 Divided keep_whole(const Mesh& surface) {

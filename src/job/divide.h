@@ -11,6 +11,7 @@
 #include "model/shell.h"
 #include "model/tet_mesh.h"
 #include "model/warning.h"
+#include "shape/premerge.h"
 
 namespace packmerger {
 
@@ -24,13 +25,24 @@ struct Divided {
   std::optional<double> resample_tolerance_mm;
 };
 
-// hollow_it: false keeps the model solid. Same surface, settings and seed: the same result on any
-// number of threads.
+// The shell and its tetrahedra, no segments yet. hollow_it: false keeps the model solid.
+Divided undivided(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
+                  const Progress& progress);
+
+// The paper's clusters, pre-merged and smoothed. Same surface, settings and seed: the same result
+// on any number of threads.
+void divide_by_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
+                        Warnings& warnings, const Progress& progress);
+
+// Both.
 Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
                Warnings& warnings, const Progress& progress);
 
 // The model as it is, solid and undivided.
 Divided keep_whole(const Mesh& surface);
+
+// What parts must fit, and how the packer turns them.
+BuildVolume build_volume(const Profile& profile);
 
 // The shell as one surface: outside and cavities.
 Mesh shell_surface(const Shell& shell);

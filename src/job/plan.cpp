@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "job/choose_division.h"
 #include "job/divide.h"
 #include "job/pack_models.h"
 #include "job/timings.h"
@@ -28,9 +29,9 @@ DividedModels divide_all(const std::vector<LoadedModel>& loaded, const Profile& 
     std::shared_ptr<const Divided>& divided = done[model.surface.get()];
     if (!divided) {
       divided = std::make_shared<const Divided>(
-          options.split
-              ? divide(*model.surface, profile, options.hollow, options.seed, warnings, progress)
-              : keep_whole(*model.surface));
+          options.split ? choose_division(*model.surface, profile, options.hollow, options.seed,
+                                          warnings, progress)
+                        : keep_whole(*model.surface));
     }
     models.push_back(divided);
   }

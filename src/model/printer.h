@@ -17,7 +17,7 @@ namespace packmerger {
 enum class Technology { kPolyjet, kFdm };
 enum class Dialect { kHandoff, kGcode, kS3g };       // what the printer is given
 enum class Objective { kPaper, kPrinter, kHeight };  // what the packer minimises
-enum class Segmentation { kPaper };                  // how the shell is divided
+enum class Segmentation { kPaper, kPrinter };        // how the shell is divided
 enum class Origin { kFrontLeft, kCenter };           // of the machine's own coordinates
 enum class FdmTime { kDeposition, kToolpath };       // which FDM estimator fits the machine
 enum class HandoffDocument { kTrayStl, kTray3mf };
@@ -36,7 +36,8 @@ struct ShapeSettings {
   double min_glue_area_mm2 = 10;
   double min_volume_fraction = 0.05;  // of V_o
   int smooth_rounds = 10;
-  Segmentation segmentation = Segmentation::kPaper;
+  Segmentation segmentation = Segmentation::kPrinter;
+  int parts = 12;  // most parts aimed at where planes divide
 };
 
 struct PackSettings {

@@ -103,8 +103,12 @@ void add_shape(ShapeSettings& s, std::vector<Key>& keys) {
         "A segment with a smaller share of the shell's volume is merged before packing."},
        {"smooth_rounds", IntegerKey{&s.smooth_rounds, from_to(0, 1000)}, "rounds",
         "Rounds of Laplacian smoothing of the cuts; 0 leaves them as they are."},
-       {"segmentation", choice(s.segmentation, {"paper"}), "",
-        "How the shell is divided: the paper's clusters."}});
+       {"segmentation", choice(s.segmentation, {"paper", "printer"}), "",
+        "How the shell is divided: the paper's clusters, or whatever packs cheapest: these or "
+        "plane "
+        "cuts."},
+       {"parts", IntegerKey{&s.parts, from_to(2, 100)}, "",
+        "Most parts aimed at where planes divide the shell (segmentation = \"printer\")."}});
 }
 
 void add_pack(PackSettings& s, std::vector<Key>& keys) {

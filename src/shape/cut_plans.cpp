@@ -22,7 +22,6 @@ struct CutHistory {
 
 namespace {
 
-constexpr int kSamples = 30000;
 constexpr double kLeastPiece = 0.002;  // of V_o, where the settings allow any
 constexpr double kSameSupport = 1e-3;  // relative: candidates nearer than that are the same one
 
@@ -128,7 +127,7 @@ std::vector<CutPlan> cut_plans(const TetMesh& mesh, const ShapeSettings& setting
                                const BuildVolume& build, const CutSearch& search,
                                std::uint64_t seed, const Progress& progress) {
   progress.report("planning cuts", 0);
-  const auto samples = std::make_shared<const MatterSamples>(sample_matter(mesh, kSamples));
+  const auto samples = std::make_shared<const MatterSamples>(sample_matter(mesh, search.samples));
   const FitTest fit(build);
   CutRules rules;
   rules.support_angle = search.support_angle;

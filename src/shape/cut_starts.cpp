@@ -15,9 +15,10 @@ constexpr int kTriesPerCut = 16;
 constexpr double kOvercut = 1.5;
 
 // Cuts the piece that needs most support until there are `count` pieces; each time the recipe that
-// saves most support per piece.
-std::vector<CutState> cut_greedily(CutBench& bench, const MatterSamples& samples, int count,
-                                   Random& random, const Progress& progress) {
+// saves most per piece.
+std::vector<CutState> cut_greedily(CutBench& bench, const MatterSamples& samples,
+                                   const CutRules& rules, int count, Random& random,
+                                   const Progress& progress) {
   std::vector<CutState> path{bench.whole()};
   while (path.back().count() < count) {
     progress.check();
@@ -41,7 +42,7 @@ std::vector<CutState> cut_greedily(CutBench& bench, const MatterSamples& samples
         auto next = bench.recut(state, {order[i]}, recipe, count);
         if (!next || next->count() == state.count()) continue;
         const double saving =
-            (state.support_mm3() - next->support_mm3()) / (next->count() - state.count());
+            (cost_of(state, rules) - cost_of(*next, rules)) / (next->count() - state.count());
         if (best && saving <= best_saving) continue;
         best = std::move(next);
         best_saving = saving;
@@ -97,12 +98,12 @@ std::vector<Start> cut_starts(const MatterSamples& samples, const CutRules& rule
   };
   makers.emplace_back([&](CutBench& bench) {
     Random random(seed + 1);
-    return named("cuts", cut_greedily(bench, samples, most, random, progress));
+    return named("cuts", cut_greedily(bench, samples, rules, most, random, progress));
   });
   makers.emplace_back([&](CutBench& bench) {
     Random random(seed + 2);
     const int many = static_cast<int>(kOvercut * most);
-    const CutState cut = cut_greedily(bench, samples, many, random, progress).back();
+    const CutState cut = cut_greedily(bench, samples, rules, many, random, progress).back();
     std::vector<CutState> merged = merge_back(bench, samples, cut, most / 2, progress);
     if (cut.count() <= most) merged.push_back(cut);
     return named("overcut", std::move(merged));
@@ -118,9 +119,9 @@ std::vector<Start> cut_starts(const MatterSamples& samples, const CutRules& rule
   };
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 up = frame.axes.col(axis);
-    for (int count = std::max(2, most / 2); count <= most; ++count)
+    for (const int count : {most, most * 3 / 4, most / 2})
       by_recipe("slabs", slabs(samples, whole.pieces[0]->shape.samples, up, count));
-    for (const double width : {0.28, 0.34, 0.4})
+    for (const double width : {0.28, 0.36})
       for (const bool halve : {false, true}) {
         const int other = (axis + 1) % 3;
         by_recipe("rings", ring(frame.middle, up, frame.axes.col(other),

@@ -8,8 +8,10 @@
 namespace packmerger {
 namespace {
 
-constexpr double kUnusable_mm3 = 1e12;  // more than any support
-constexpr double kGlueMargin = 1.3;     // samples tell the area of a joint roughly
+// Times what does not fit or is shut: more than any support.
+constexpr double kUnusable = 1e9;
+constexpr double kRounding = 1e-9;   // of V_o
+constexpr double kGlueMargin = 1.3;  // samples tell the area of a joint roughly
 
 double volume_of(const MatterSamples& samples, const std::vector<int>& list) {
   double sum = 0;
@@ -41,15 +43,15 @@ double CutState::support_mm3() const {
   return sum;
 }
 
-bool CutState::is_usable() const {
-  return shut_cavities == 0 &&
-         std::all_of(pieces.begin(), pieces.end(), [](const auto& piece) { return piece->fits; });
+double CutState::unfit_mm3() const {
+  double sum = 0;
+  for (const auto& piece : pieces) sum += piece->fits ? 0 : piece->shape.volume_mm3;
+  return sum;
 }
 
 double cost_of(const CutState& state, const CutRules& rules) {
-  int unusable = state.shut_cavities;
-  for (const auto& piece : state.pieces) unusable += piece->fits ? 0 : 1;
-  return state.support_mm3() + rules.part_price_mm3 * state.count() + kUnusable_mm3 * unusable;
+  return state.support_mm3() + rules.part_price_mm3 * state.count() +
+         kUnusable * (state.unfit_mm3() + state.shut_cavities);
 }
 
 CutState CutBench::whole() {
@@ -69,7 +71,7 @@ CutState CutBench::whole() {
 bool CutBench::fits_build(const std::vector<int>& list) const {
   std::vector<Vec3> points;
   for (const int sample : list) points.push_back(samples_.points[sample]);
-  return fit_.fits(points);
+  return fit_.fits(points, samples_.spacing_mm);
 }
 
 std::vector<CutBench::Cell> CutBench::cut(const Cell& region, const CutRecipe& recipe,
@@ -261,10 +263,12 @@ std::optional<CutState> CutBench::recut(const CutState& state, const std::vector
   if (next.shut_cavities > state.shut_cavities) return std::nullopt;
   std::vector<char> fits;
   for (const Cell& part : *parts) fits.push_back(fits_build(part.samples) ? 1 : 0);
-  const auto unfit = std::count(fits.begin(), fits.end(), 0);
-  if (unfit > std::count_if(group.begin(), group.end(),
-                            [&](int piece) { return !state.pieces[piece]->fits; }))
-    return std::nullopt;
+  double unfit_mm3 = 0, unfit_before_mm3 = 0;
+  for (std::size_t i = 0; i < parts->size(); ++i)
+    if (!fits[i]) unfit_mm3 += (*parts)[i].volume_mm3;
+  for (const int piece : group)
+    if (!state.pieces[piece]->fits) unfit_before_mm3 += state.pieces[piece]->shape.volume_mm3;
+  if (unfit_mm3 > unfit_before_mm3 + kRounding * samples_.volume_mm3) return std::nullopt;
 
   for (std::size_t i = 0; i < parts->size(); ++i) {
     Cell& part = (*parts)[i];

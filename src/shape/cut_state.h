@@ -27,8 +27,8 @@ struct CutState {
 
   int count() const { return static_cast<int>(pieces.size()); }
   double support_mm3() const;
-  // Every piece fits, no cavity is shut.
-  bool is_usable() const;
+  double unfit_mm3() const;  // volume of the pieces that fit the build volume in no rotation
+  bool is_usable() const { return shut_cavities == 0 && unfit_mm3() == 0; }
 };
 
 // What is allowed, and what a division costs.
@@ -62,7 +62,7 @@ class CutBench {
 
   // The division with the pieces in `group` united and that region cut anew; no steps: they stay
   // united. Fragments go to their largest neighbour within the region. Empty where the rules forbid
-  // it: more than most_parts, a piece or a joint too small, more pieces that fit the build volume
+  // it: more than most_parts, a piece or a joint too small, more matter that fits the build volume
   // in no rotation than before, more cavities with one piece all round.
   std::optional<CutState> recut(const CutState& state, const std::vector<int>& group,
                                 const CutRecipe& recipe, int most_parts);

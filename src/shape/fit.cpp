@@ -96,12 +96,14 @@ bool FitTest::fits(const Extents& a, const Extents& b) const {
   });
 }
 
-bool FitTest::fits(const std::vector<Vec3>& points) const {
+bool FitTest::fits(const std::vector<Vec3>& points, double margin_mm) const {
   Box3 box;
   for (const Vec3& point : points) box.extend(point);
   if (box.isEmpty()) return false;
-  if (box.diagonal().norm() <= build_mm_.minCoeff()) return true;  // however it is turned
-  const Extents extents = extents_of(points);
+  if (box.diagonal().norm() + margin_mm <= build_mm_.minCoeff()) return true;  // turned any way
+  Extents extents = extents_of(points);
+  for (double& low : extents.low) low -= margin_mm / 2;
+  for (double& high : extents.high) high += margin_mm / 2;
   return fits(extents, extents);
 }
 

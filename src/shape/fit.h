@@ -27,8 +27,9 @@ class FitTest {
   std::vector<Extents> extents(const TetMesh& mesh, const Segments& segments) const;
 
   bool fits(const Extents& a, const Extents& b) const;
-  // Of a part that holds these points. False for none.
-  bool fits(const std::vector<Vec3>& points) const;
+  // Of a part that holds these points and reaches at most margin_mm / 2 beyond them. False for
+  // none.
+  bool fits(const std::vector<Vec3>& points, double margin_mm) const;
   static void unite(Extents& into, const Extents& from);
 
  private:

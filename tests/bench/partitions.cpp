@@ -37,9 +37,11 @@ struct Arguments {
   bool hollow = true;
   int parts = 0;
   int effort = CutSearch().effort;
+  int samples = CutSearch().samples;
   std::uint64_t seed = 1;
 };
 
+constexpr double kPartPrice = 0.02;  // of V_o
 constexpr int kDirections = 200;
 constexpr std::size_t kKept = 6;
 constexpr double kCoarse_mm = 1.5;
@@ -85,8 +87,9 @@ std::vector<Vec3> directions_of(const Mesh& surface) {
         facing.try_emplace({std::lround(n.x()), std::lround(n.y()), std::lround(n.z())}, area);
     if (!is_new) entry->second += area;
   }
+  const double whole_mm2 = area_mm2(surface);
   for (const auto& [key, area] : facing) {
-    if (area.norm() < 0.01 * area_mm2(surface)) continue;
+    if (area.norm() < 0.01 * whole_mm2) continue;
     directions.push_back(area.normalized());
     directions.push_back(-area.normalized());
   }
@@ -155,7 +158,11 @@ void run(const Arguments& arguments) {
     print_row("paper", segments.count, 0, mesh, segments, warnings, solid, angle, watch.seconds());
   }
   const Stopwatch watch;
-  const CutSearch search{angle, 0.02 * total_volume_mm3(tets), arguments.effort};
+  CutSearch search;
+  search.support_angle = angle;
+  search.part_price_mm3 = kPartPrice * total_volume_mm3(tets);
+  search.effort = arguments.effort;
+  search.samples = arguments.samples;
   const auto plans = cut_plans(tets, profile.shape, build, search, arguments.seed, silent);
   fmt::print("{} plans in {:.2f} s\n", plans.size(), watch.seconds());
   std::fflush(stdout);
@@ -185,6 +192,8 @@ void add_partitions(CLI::App& program) {
   verb->add_flag("!--no-hollow", arguments->hollow, "divide the solid");
   verb->add_option("--parts", arguments->parts, "most parts; 0: the profile's");
   verb->add_option("--effort", arguments->effort, "changes tried")->capture_default_str();
+  verb->add_option("--samples", arguments->samples, "points that stand for the matter")
+      ->capture_default_str();
   verb->add_option("--seed", arguments->seed)->capture_default_str();
   verb->callback([arguments] { run(*arguments); });
 }

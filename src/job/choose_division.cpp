@@ -1,0 +1,119 @@
+#include "job/choose_division.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "job/pack_models.h"
+#include "pack/pack.h"
+#include "shape/cut_plans.h"
+
+namespace packmerger {
+namespace {
+
+constexpr std::size_t kMostPlans = 4;  // that are cut and packed
+constexpr double kAboutEqual = 0.02;   // of the least packed cost
+constexpr double kLeastPrice = 0.005;  // of V_o: what a part more must save in support at least
+constexpr double kMostPrice = 0.05;    // and at most
+constexpr double kTrialRotation = 60;  // degrees, at least: the packer adds each part's own ways up
+
+struct Candidate {
+  std::shared_ptr<Divided> model;
+  Warnings warnings;
+  double cost = std::numeric_limits<double>::infinity();  // packed
+};
+
+// How much support costs as much as a part more, by the profile's objective. Where the objective
+// does not know parts, or not support, a little.
+double part_price_mm3(const Profile& profile, double volume_mm3) {
+  const double side = std::cbrt(volume_mm3);
+  const Cost cost = packing_problem({}, profile, 0, 0).cost;
+  TrayMeasure tray{Vec3(3 * side, 3 * side, side), volume_mm3, volume_mm3, 8};
+  const double before = cost.evaluate(tray);
+  ++tray.parts;
+  const double of_a_part = cost.evaluate(tray) - before;
+  --tray.parts;
+  tray.support_mm3 += volume_mm3;
+  const double of_support = (cost.evaluate(tray) - before) / volume_mm3;
+  const double least = kLeastPrice * volume_mm3, most = kMostPrice * volume_mm3;
+  return of_support > 0 ? std::clamp(of_a_part / of_support, least, most) : least;
+}
+
+// A short packing of this model alone, the same on any machine: no clock ends it.
+double packed_cost(const std::shared_ptr<const Divided>& model, const Profile& profile,
+                   std::uint64_t seed, const Progress& progress) {
+  PackProblem problem = packing_problem({model}, profile, seed, 0);
+  problem.edges.clear();
+  problem.grid_mm = std::max(problem.grid_mm, problem.search_grid_mm / 2);
+  problem.search_grid_mm = std::max(problem.grid_mm, problem.search_grid_mm);
+  problem.rotation_step = std::max(problem.rotation_step, radians(kTrialRotation));
+  problem.search_rotation_step = std::max(problem.search_rotation_step, problem.rotation_step);
+  problem.tabu_patience = 1;
+  try {
+    return pack(problem, progress).cost;
+  } catch (const Error& error) {
+    // It may still fit another way, and where nothing fits the packer says so better.
+    if (error.fault() != Fault::kBadInput) throw;
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
+std::vector<Candidate> candidates_of(const Divided& whole, const Profile& profile,
+                                     std::uint64_t seed, const Progress& progress) {
+  const BuildVolume build = build_volume(profile);
+  CutSearch search;
+  search.support_angle = radians(profile.support_angle_deg);
+  search.part_price_mm3 = part_price_mm3(profile, total_volume_mm3(whole.tets));
+  std::vector<CutPlan> plans = cut_plans(whole.tets, profile.shape, build, search, seed, progress);
+  plans.resize(std::min(plans.size(), kMostPlans));
+  std::vector<Candidate> candidates(1 + plans.size());
+  parallel_for(candidates.size(), [&](std::size_t i) {
+    Candidate& one = candidates[i];
+    one.model = std::make_shared<Divided>(whole);
+    if (i == 0) {
+      divide_by_clusters(*one.model, profile, seed, one.warnings, progress);
+      return;
+    }
+    const Segments cut = cut_as_planned(one.model->tets, plans[i - 1], progress);
+    one.model->clusters = cut.count;
+    one.model->segments =
+        premerge(one.model->tets, cut, profile.shape, build, one.warnings, progress);
+  });
+  return candidates;
+}
+
+}  // namespace
+
+Divided choose_division(const Mesh& surface, const Profile& profile, bool hollow_it,
+                        std::uint64_t seed, Warnings& warnings, const Progress& progress) {
+  if (profile.shape.segmentation == Segmentation::kPaper)
+    return divide(surface, profile, hollow_it, seed, warnings, progress);
+  const Divided whole = undivided(surface, profile, hollow_it, warnings, progress);
+  std::vector<Candidate> candidates = candidates_of(whole, profile, seed, progress);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    progress.report("choosing a division",
+                    static_cast<double>(i) / static_cast<double>(candidates.size()));
+    candidates[i].cost = packed_cost(candidates[i].model, profile, seed, progress);
+    least = std::min(least, candidates[i].cost);
+  }
+  progress.report("choosing a division", 1);
+  const Candidate* best = &candidates.front();
+  if (std::isfinite(least)) {
+    const auto rank = [&](const Candidate& c) {
+      return std::tuple(c.cost > (1 + kAboutEqual) * least, c.model->segments.count, c.cost);
+    };
+    best = &*std::min_element(
+        candidates.begin(), candidates.end(),
+        [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); });
+  }
+  warnings.insert(warnings.end(), best->warnings.begin(), best->warnings.end());
+  return *best->model;
+}
+
+}  // namespace packmerger
