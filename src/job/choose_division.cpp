@@ -52,8 +52,8 @@ double packed_cost(const std::shared_ptr<const Divided>& model, const Profile& p
   problem.grid_mm = std::max(problem.grid_mm, problem.search_grid_mm / 2);
   problem.search_grid_mm = std::max(problem.grid_mm, problem.search_grid_mm);
   problem.rotation_step = std::max(problem.rotation_step, radians(kTrialRotation));
-  problem.search_rotation_step = std::max(problem.search_rotation_step, problem.rotation_step);
   problem.tabu_patience = 1;
+  problem.tabu_restarts = 0;
   try {
     return pack(problem, progress).cost;
   } catch (const Error& error) {

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSearchShare = 0.8;  // of the packing's progress, and of its budget
-constexpr int kKicks = 5;             // without a better layout before the search ends
 constexpr int kKickMoves = 2;
 constexpr double kDetour = 1.02;        // dearer than the best so far a layout on the way may be
 constexpr std::size_t kStartWays = 6;   // ways up in every turn for the first layout
@@ -45,7 +44,7 @@ class TabuSearch {
       const double before = best_.cost;
       descend(current);
       kicks = best_.cost < before ? 0 : kicks + 1;
-      if (kicks > kKicks || over()) break;
+      if (kicks > problem_.tabu_restarts || over()) break;
       current = kicked(best_);
       progress_of(kicks);
     }
@@ -57,7 +56,7 @@ class TabuSearch {
   bool over() const { return pace_.passed() >= kSearchShare; }
 
   void progress_of(int kicks) {
-    pace_.reached(std::max(pace_.passed(), kSearchShare * kicks / (kKicks + 1)));
+    pace_.reached(std::max(pace_.passed(), kSearchShare * kicks / (problem_.tabu_restarts + 1)));
   }
 
   Layout first_layout() {
