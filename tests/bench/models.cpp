@@ -1,0 +1,184 @@
+#include "bench/models.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/progress.h"
+#include "fixtures/models.h"
+#include "shape/resample.h"
+#include "unit/printers/shapes.h"
+
+namespace packmerger::bench {
+namespace {
+
+constexpr int kRoundSides = 64;
+constexpr int kStickSides = 24;
+constexpr int kBallSubdivisions = 3;
+constexpr int kArchStations = 48;  // of the half ring
+
+struct RadiusAndHeight {
+  double r, z;
+};
+
+// The surface of revolution of a curve that starts and ends on the axis, matter on its left.
+TriangleSoup revolved(const std::vector<RadiusAndHeight>& curve, int sides) {
+  TriangleSoup soup;
+  const auto rings = static_cast<int>(curve.size()) - 2;
+  soup.points.emplace_back(0, 0, curve.front().z);
+  soup.points.emplace_back(0, 0, curve.back().z);
+  for (int ring = 0; ring < rings; ++ring)
+    for (int side = 0; side < sides; ++side) {
+      const double angle = 2 * std::numbers::pi * side / sides;
+      const auto& [r, z] = curve[static_cast<std::size_t>(ring + 1)];
+      soup.points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+  const auto point = [=](int ring, int side) { return 2 + ring * sides + side % sides; };
+  for (int side = 0; side < sides; ++side) {
+    soup.triangles.push_back({0, point(0, side + 1), point(0, side)});
+    for (int ring = 0; ring + 1 < rings; ++ring) {
+      const int a = point(ring, side), b = point(ring, side + 1);
+      const int c = point(ring + 1, side + 1), d = point(ring + 1, side);
+      soup.triangles.push_back({a, b, c});
+      soup.triangles.push_back({a, c, d});
+    }
+    soup.triangles.push_back({1, point(rings - 1, side), point(rings - 1, side + 1)});
+  }
+  return soup;
+}
+
+TriangleSoup moved(TriangleSoup soup, const Pose& pose) {
+  for (Vec3& point : soup.points) point = pose * point;
+  return soup;
+}
+
+TriangleSoup on_the_plate(TriangleSoup soup) {
+  Box3 box;
+  for (const Vec3& point : soup.points) box.extend(point);
+  return moved(std::move(soup), Pose(Eigen::Translation3d(0, 0, -box.min().z())));
+}
+
+TriangleSoup cup(const RoundSize& size) {
+  const auto [r, h] = size;
+  return revolved({{0, 0},
+                   {r, 0},
+                   {r, h},
+                   {r - kCupWall_mm, h},
+                   {r - kCupWall_mm, kCupWall_mm},
+                   {0, kCupWall_mm}},
+                  kRoundSides);
+}
+
+TriangleSoup crystal(const RoundSize& size) {
+  constexpr double kFoot = 0.2;  // of the radius
+  const auto [r, h] = size;
+  return revolved({{0, 0}, {kFoot * r, 0}, {r, h / 2}, {0, h}}, 8);
+}
+
+TriangleSoup ball(const Vec3& centre, double radius_mm) {
+  return moved(fixtures::sphere(radius_mm, kBallSubdivisions), Pose(Eigen::Translation3d(centre)));
+}
+
+// From the inside of one ball to the inside of another: sticks keep clear of the very centres, so
+// that no two of them share a point there.
+TriangleSoup stick(const Vec3& from, const Vec3& to) {
+  const double length = (to - from).norm();
+  const double in_mm = kHydrogenRadius_mm / 2;
+  Pose pose(Eigen::Translation3d(from) *
+            Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), to - from));
+  return moved(revolved({{0, in_mm},
+                         {kStickRadius_mm, in_mm},
+                         {kStickRadius_mm, length - in_mm},
+                         {0, length - in_mm}},
+                        kStickSides),
+               pose);
+}
+
+}  // namespace
+
+Mesh sphere_model() {
+  return closed_mesh(on_the_plate(fixtures::sphere(kSphereDiameter_mm / 2, 5)));
+}
+
+Mesh arch_model() {
+  const double outer = kArchWidth_mm / 2;
+  const double inner = outer - kArchRib_mm;
+  const double spring = kArchHeight_mm - outer;  // where the legs end and the half ring begins
+  struct Station {
+    double x, z, drop;  // of the ring's middle plane: direction from the centre, and how far down
+  };
+  std::vector<Station> stations{{1, 0, spring}};
+  for (int i = 0; i <= kArchStations; ++i) {
+    const double angle = std::numbers::pi * i / kArchStations;
+    stations.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  stations.push_back({-1, 0, spring});
+
+  TriangleSoup soup;
+  for (const auto& [x, z, drop] : stations)
+    for (const auto& [radius, y] :
+         {std::pair{inner, 0.0}, std::pair{outer, 0.0}, std::pair{outer, kArchDepth_mm},
+          std::pair{inner, kArchDepth_mm}})
+      soup.points.emplace_back(radius * x, y, radius * z + spring - drop);
+  const auto last = static_cast<int>(stations.size()) - 1;
+  for (int station = 0; station < last; ++station)
+    for (int corner = 0; corner < 4; ++corner) {
+      const int a = 4 * station + corner, b = 4 * station + (corner + 1) % 4;
+      soup.triangles.push_back({a, b, b + 4});
+      soup.triangles.push_back({a, b + 4, a + 4});
+    }
+  soup.triangles.push_back({0, 2, 1});
+  soup.triangles.push_back({0, 3, 2});
+  soup.triangles.push_back({4 * last, 4 * last + 1, 4 * last + 2});
+  soup.triangles.push_back({4 * last, 4 * last + 2, 4 * last + 3});
+  return closed_mesh(soup);
+}
+
+Mesh molecule_model() {
+  // A methyl's hydrogens stand 120° apart round y, one of them on top, and point a third of a
+  // stick's length outwards. The height gives the length of their sticks, the depth that of the
+  // carbons'.
+  const double round = 2 * std::numbers::sqrt2 / 3;
+  const double to_hydrogen = (kMoleculeHeight_mm - 2 * kHydrogenRadius_mm) / (1.5 * round);
+  const double to_carbon = kMoleculeDepth_mm / 2 - kHydrogenRadius_mm - to_hydrogen / 3;
+  const Vec3 zinc = Vec3::Zero();
+  TriangleSoup soup = ball(zinc, kZincRadius_mm);
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 carbon(0, side * to_carbon, 0);
+    soup = fixtures::together(soup, ball(carbon, kCarbonRadius_mm));
+    soup = fixtures::together(soup, stick(zinc, carbon));
+    for (int i = 0; i < 3; ++i) {
+      const double angle = radians(90 + 120 * i);
+      const Vec3 way(round * std::cos(angle), side / 3, round * std::sin(angle));
+      const Vec3 hydrogen = carbon + to_hydrogen * way;
+      soup = fixtures::together(soup, ball(hydrogen, kHydrogenRadius_mm));
+      soup = fixtures::together(soup, stick(carbon, hydrogen));
+    }
+  }
+  constexpr double kTolerance_mm = 0.05;
+  const Resampled united = resample(closed_mesh(soup), kTolerance_mm, Progress());
+  return closed_mesh(on_the_plate(to_soup(united.surface)));
+}
+
+Mesh table_model() {
+  return shapes::table(kTableSide_mm, kTableHeight_mm, kTableTop_mm, kTableLeg_mm, Vec3::Zero());
+}
+
+std::vector<Mesh> group_models(double scale) {
+  std::vector<Mesh> group;
+  for (TriangleSoup& piece :
+       std::array{cup(kLargeCup), cup(kSmallCup), crystal(kLargeCrystal), crystal(kSmallCrystal)}) {
+    for (Vec3& point : piece.points) point *= scale;
+    group.push_back(closed_mesh(piece));
+  }
+  return group;
+}
+
+std::optional<Mesh> bunny_model() {
+  auto soup = fixtures::load_test_model("bunny");
+  if (!soup) return std::nullopt;
+  for (Vec3& point : soup->points) point = Vec3(point.x(), -point.z(), point.y());
+  return closed_mesh(fixtures::scaled_to(std::move(*soup), kBunnyLongest_mm));
+}
+
+}  // namespace packmerger::bench
