@@ -10,6 +10,8 @@ void add_cuts(CLI::App& program);
 
 // The packer's inner loops against plain loops, OSMesa and the least they have to do.
 void add_kernels(CLI::App& program);
+// The paper's figures and Table 1.
+void add_figures(CLI::App& program);
 
 // The paper's packer, simple and slow, on a model's segments.
 void add_reference(CLI::App& program);

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <map>
 #include <memory>
 #include <string>
 
 #include "base/files.h"
 #include "bench/bench.h"
+#include "bench/divided_picture.h"
 #include "job/arrangement.h"
 #include "job/load_models.h"
 #include "model/printer.h"
@@ -26,31 +25,6 @@ struct Arguments {
   bool y_up = false;
   std::string out;
 };
-
-// The model's outside with the segment that each of its faces belongs to.
-ColouredMesh outside_of(const TetMesh& mesh, const Segments& segments, bool y_up) {
-  TriangleSoup soup;
-  ColouredMesh coloured;
-  std::map<int, int> index_of;
-  for (int t = 0; t < mesh.count(); ++t)
-    for (int face = 0; face < 4; ++face) {
-      if (mesh.sides[t][face] != FaceSide::kOutside) continue;
-      std::array<int, 3> triangle = face_corners(mesh, t, face);
-      for (int& corner : triangle) {
-        const auto [entry, is_new] =
-            index_of.try_emplace(corner, static_cast<int>(soup.points.size()));
-        if (is_new) {
-          const Vec3& point = mesh.points[corner];
-          soup.points.push_back(y_up ? Vec3(point.x(), -point.z(), point.y()) : point);
-        }
-        corner = entry->second;
-      }
-      soup.triangles.push_back(triangle);
-      coloured.segment_of_face.push_back(segments.of_tetrahedron[t]);
-    }
-  coloured.surface = closed_mesh(soup);
-  return coloured;
-}
 
 void run(const Arguments& arguments) {
   const Profile profile = read_profile(arguments.profile);

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "base/error.h"
 #include "base/progress.h"
 #include "fixtures/models.h"
 #include "shape/resample.h"
@@ -174,9 +176,11 @@ std::vector<Mesh> group_models(double scale) {
   return group;
 }
 
-std::optional<Mesh> bunny_model() {
+Mesh bunny_model() {
   auto soup = fixtures::load_test_model("bunny");
-  if (!soup) return std::nullopt;
+  if (!soup)
+    throw Error(Fault::kUnavailable, "The npm package \"bunny\" is not installed",
+                "Run npm ci in the project's folder.");
   for (Vec3& point : soup->points) point = Vec3(point.x(), -point.z(), point.y());
   return closed_mesh(fixtures::scaled_to(std::move(*soup), kBunnyLongest_mm));
 }

@@ -6,7 +6,6 @@
 // z = 0, as the paper printed the solid ones. Lengths in mm. Same bytes on every run.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "model/mesh.h"
@@ -60,9 +59,9 @@ inline constexpr RoundSize kSmallCrystal{4.5, 14};
 inline constexpr double kSecondGroupScale = 2.1;
 std::vector<Mesh> group_models(double scale);
 
-// Figure 1. The npm package "bunny", ears up, 138 mm tall; its longest side is given. Empty where
-// the package is not installed.
+// Figure 1. The npm package "bunny", ears up, 138 mm tall; its longest side is given. Throws
+// Error{kUnavailable} where the package is not installed.
 inline constexpr double kBunnyLongest_mm = 141.6;
-std::optional<Mesh> bunny_model();
+Mesh bunny_model();
 
 }  // namespace packmerger::bench

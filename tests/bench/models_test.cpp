@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 
 #include "base/error.h"
+#include "fixtures/models.h"
 #include "fixtures/profiles.h"
 #include "printers/estimate.h"
 #include "shape/hollow.h"
@@ -107,11 +109,12 @@ TEST(FigureModels, Groups) {
 }
 
 TEST(FigureModels, Bunny) {
-  const auto mesh = bunny_model();
-  if (!mesh) GTEST_SKIP() << "the npm package bunny is not installed";
-  EXPECT_NEAR(bounding_box(*mesh).sizes().maxCoeff(), 141.6, 1e-9);
-  EXPECT_NEAR(bounding_box(*mesh).sizes().z(), 138, 1);
-  EXPECT_NEAR(bounding_box(*mesh).min().z(), 0, 1e-9);
+  PACKMERGER_TEST_MODEL(installed, "bunny");
+  EXPECT_EQ(installed.triangles.size(), 3674U);
+  const Mesh mesh = bunny_model();
+  EXPECT_NEAR(bounding_box(mesh).sizes().maxCoeff(), 141.6, 1e-9);
+  EXPECT_NEAR(bounding_box(mesh).sizes().z(), 138, 1);
+  EXPECT_NEAR(bounding_box(mesh).min().z(), 0, 1e-9);
 }
 
 TEST(SolidRowsOfTableOne, Sphere) {
@@ -121,9 +124,10 @@ TEST(SolidRowsOfTableOne, Sphere) {
 }
 
 TEST(SolidRowsOfTableOne, Bunny) {
-  const auto mesh = bunny_model();
-  if (!mesh) GTEST_SKIP() << "the npm package bunny is not installed";
-  const Estimate e = standing(*mesh);
+  PACKMERGER_TEST_MODEL(installed, "bunny");
+  EXPECT_EQ(installed.triangles.size(), 3674U);
+  const Mesh mesh = bunny_model();
+  const Estimate e = standing(mesh);
   EXPECT_NEAR(e.time_s, 49380, 4938);
   EXPECT_NEAR(e.support_g, 351, 35.1);
 }

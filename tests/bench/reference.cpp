@@ -1,17 +1,17 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "bench/bench.h"
+#include "bench/reference_problem.h"
 #include "bench/reference_search.h"
-#include "job/divide.h"
+#include "bench/stopwatch.h"
 #include "job/load_models.h"
-#include "job/pack_models.h"
 #include "model/printer.h"
 
 namespace packmerger::bench {
@@ -27,29 +27,14 @@ struct Arguments {
   bool json = false;
 };
 
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 PackProblem problem_of(const Arguments& arguments) {
-  Profile profile = read_profile(arguments.profile);
-  profile.pack.objective = Objective::kPaper;
-  profile.pack.grid_mm = arguments.grid_mm;
-  profile.pack.rotation_step_deg = arguments.step_deg;
   const Progress silent;
   Warnings warnings;
   Sizing sizing;
   sizing.size_mm = arguments.size_mm;
   const auto loaded = load_models({arguments.model}, sizing, warnings, silent);
-  const auto divided = std::make_shared<const Divided>(
-      divide(*loaded.front().surface, profile, true, 1, warnings, silent));
-  return packing_problem({divided}, profile, 1, 0);
+  return paper_problem(*loaded.front().surface, read_profile(arguments.profile), arguments.grid_mm,
+                       arguments.step_deg);
 }
 
 void run(const Arguments& arguments) {
@@ -64,19 +49,20 @@ void run(const Arguments& arguments) {
     told["packings"] = answer.packings;
     told["cost"] = answer.cost;
     told["seconds"] = watch.seconds();
+    if (arguments.json)
+      for (const OrderSearch& search : answer.searches) {
+        std::vector<double> costs;
+        for (const SearchRound& round : search.rounds) costs.push_back(round.best);
+        told["convergence"].push_back(costs);
+      }
   } else {
-    std::vector<std::vector<ReferenceMaps>> maps;
-    std::vector<double> volumes;
     const Stopwatch drawing;
-    for (int item = 0; item < static_cast<int>(problem.items.size()); ++item) {
-      maps.push_back(packer.draw({item}));
-      volumes.push_back(problem.items[static_cast<std::size_t>(item)].volume_mm3);
-    }
+    const DrawnParts drawn = draw_items(problem, packer);
     told["drawing_s"] = drawing.seconds();
-    Order order(maps.size());
+    Order order(drawn.maps.size());
     std::iota(order.begin(), order.end(), 0);
     const Stopwatch watch;
-    told["cost"] = packer.pack(maps, volumes, order).cost;
+    told["cost"] = packer.pack(drawn.maps, drawn.volumes_mm3, order).cost;
     told["seconds"] = watch.seconds();
     told["gcells_per_s"] = packer.cells() / watch.seconds() / 1e9;
   }

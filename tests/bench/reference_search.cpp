@@ -1,61 +1,61 @@
 #include "bench/reference_search.h"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/random.h"
+#include "bench/reference_problem.h"
 
 namespace packmerger::bench {
-namespace {
-
-double volume_of(const ItemSet& items, const PackProblem& problem) {
-  double volume = 0;
-  for (const int item : items) volume += problem.items[static_cast<std::size_t>(item)].volume_mm3;
-  return volume;
-}
-
-// The best order of these parts, from a random one on.
-double best_order_cost(const std::vector<std::vector<ReferenceMaps>>& maps,
-                       const std::vector<double>& volumes, const PackProblem& problem,
-                       ReferencePacker& packer, Random& random, int& packings) {
+OrderSearch search_order(const std::vector<std::vector<ReferenceMaps>>& maps,
+                         const std::vector<double>& volumes_mm3, const PackProblem& problem,
+                         ReferencePacker& packer, Random& random) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const ThreadLimit one_thread(1);
   Order start(maps.size());
   std::iota(start.begin(), start.end(), 0);
   random.shuffle(start);
+  OrderSearch search;
+  double least_of_round = kInfinity;
   const auto cost_of = [&](const Order& order) {
-    ++packings;
-    return packer.pack(maps, volumes, order).cost;
+    ++search.packings;
+    return packer.pack(maps, volumes_mm3, order).cost;
   };
+  search.cost = cost_of(start);
   OrderCost cost;
-  cost.evaluate = [&](const Order& order, std::size_t, double) { return cost_of(order); };
-  cost.moved = [](const Order&, std::size_t) {};
+  cost.evaluate = [&](const Order& order, std::size_t, double) {
+    const double found = cost_of(order);
+    least_of_round = std::min(least_of_round, found);
+    return found;
+  };
+  cost.moved = [&](const Order&, std::size_t) {
+    search.cost = std::min(search.cost, least_of_round);
+    search.rounds.push_back({least_of_round, search.cost});
+    least_of_round = kInfinity;
+  };
   cost.go_on = [](int) { return true; };
   const TabuSettings settings{problem.tabu_memory, problem.tabu_patience, problem.tabu_samples,
                               random.bits()};
-  return tabu_search(start, cost_of(start), settings, cost).cost;
+  search.cost = tabu_search(start, search.cost, settings, cost).cost;
+  return search;
 }
 
-}  // namespace
-
 ReferenceAnswer reference_search(const PackProblem& problem, ReferencePacker& packer) {
-  const ThreadLimit one_thread(1);
   Random random(problem.seed);
   std::vector<ItemSet> parts;
-  std::vector<std::vector<ReferenceMaps>> maps;
-  std::vector<double> volumes;
-  for (int item = 0; item < static_cast<int>(problem.items.size()); ++item) {
-    parts.push_back({item});
-    maps.push_back(packer.draw(parts.back()));
-    volumes.push_back(volume_of(parts.back(), problem));
-  }
+  auto [maps, volumes] = draw_items(problem, packer);
+  for (int item = 0; item < static_cast<int>(problem.items.size()); ++item) parts.push_back({item});
   ReferenceAnswer best;
   best.cost = std::numeric_limits<double>::infinity();
   while (true) {
-    const double cost = best_order_cost(maps, volumes, problem, packer, random, best.packings);
-    if (cost < best.cost) {
+    best.searches.push_back(search_order(maps, volumes, problem, packer, random));
+    const OrderSearch& search = best.searches.back();
+    best.packings += search.packings;
+    if (search.cost < best.cost) {
       best.parts = parts;
-      best.cost = cost;
+      best.cost = search.cost;
     }
     std::vector<std::pair<int, int>> pairs = mergeable_pairs(parts, problem);
     random.shuffle(pairs);
