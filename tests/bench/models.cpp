@@ -6,17 +6,14 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/progress.h"
+#include "bench/balls_and_sticks.h"
 #include "fixtures/models.h"
-#include "shape/resample.h"
 #include "unit/printers/shapes.h"
 
 namespace packmerger::bench {
 namespace {
 
 constexpr int kRoundSides = 64;
-constexpr int kStickSides = 24;
-constexpr int kBallSubdivisions = 3;
 constexpr int kArchStations = 48;  // of the half ring
 
 struct RadiusAndHeight {
@@ -77,25 +74,6 @@ TriangleSoup crystal(const RoundSize& size) {
   return revolved({{0, 0}, {kFoot * r, 0}, {r, h / 2}, {0, h}}, 8);
 }
 
-TriangleSoup ball(const Vec3& centre, double radius_mm) {
-  return moved(fixtures::sphere(radius_mm, kBallSubdivisions), Pose(Eigen::Translation3d(centre)));
-}
-
-// From the inside of one ball to the inside of another: sticks keep clear of the very centres, so
-// that no two of them share a point there.
-TriangleSoup stick(const Vec3& from, const Vec3& to) {
-  const double length = (to - from).norm();
-  const double in_mm = kHydrogenRadius_mm / 2;
-  Pose pose(Eigen::Translation3d(from) *
-            Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), to - from));
-  return moved(revolved({{0, in_mm},
-                         {kStickRadius_mm, in_mm},
-                         {kStickRadius_mm, length - in_mm},
-                         {0, length - in_mm}},
-                        kStickSides),
-               pose);
-}
-
 }  // namespace
 
 Mesh sphere_model() {
@@ -143,23 +121,21 @@ Mesh molecule_model() {
   const double round = 2 * std::numbers::sqrt2 / 3;
   const double to_hydrogen = (kMoleculeHeight_mm - 2 * kHydrogenRadius_mm) / (1.5 * round);
   const double to_carbon = kMoleculeDepth_mm / 2 - kHydrogenRadius_mm - to_hydrogen / 3;
-  const Vec3 zinc = Vec3::Zero();
-  TriangleSoup soup = ball(zinc, kZincRadius_mm);
+  std::vector<Ball> balls{{Vec3::Zero(), kZincRadius_mm}};
+  std::vector<Stick> sticks;
   for (const double side : {-1.0, 1.0}) {
-    const Vec3 carbon(0, side * to_carbon, 0);
-    soup = fixtures::together(soup, ball(carbon, kCarbonRadius_mm));
-    soup = fixtures::together(soup, stick(zinc, carbon));
+    const auto carbon = static_cast<int>(balls.size());
+    balls.push_back({Vec3(0, side * to_carbon, 0), kCarbonRadius_mm});
+    sticks.push_back({0, carbon});
     for (int i = 0; i < 3; ++i) {
       const double angle = radians(90 + 120 * i);
       const Vec3 way(round * std::cos(angle), side / 3, round * std::sin(angle));
-      const Vec3 hydrogen = carbon + to_hydrogen * way;
-      soup = fixtures::together(soup, ball(hydrogen, kHydrogenRadius_mm));
-      soup = fixtures::together(soup, stick(carbon, hydrogen));
+      sticks.push_back({carbon, static_cast<int>(balls.size())});
+      balls.push_back({balls[carbon].centre + to_hydrogen * way, kHydrogenRadius_mm});
     }
   }
-  constexpr double kTolerance_mm = 0.05;
-  const Resampled united = resample(closed_mesh(soup), kTolerance_mm, Progress());
-  return closed_mesh(on_the_plate(to_soup(united.surface)));
+  constexpr double kSpacing_mm = 2;
+  return closed_mesh(on_the_plate(balls_and_sticks(balls, sticks, kStickRadius_mm, kSpacing_mm)));
 }
 
 Mesh table_model() {
