@@ -46,13 +46,4 @@ Image halved(const Image& image) {
   return half;
 }
 
-Image stacked(const std::vector<Image>& images) {
-  Image all{images.front().width, 0, {}};
-  for (const Image& image : images) {
-    all.height += image.height;
-    all.rgba.insert(all.rgba.end(), image.rgba.begin(), image.rgba.end());
-  }
-  return all;
-}
-
 }  // namespace packmerger::bench

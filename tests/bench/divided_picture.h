@@ -1,7 +1,5 @@
-// Pictures of a model that is divided into segments, and what several pictures are joined with.
+// Pictures of a model that is divided into segments.
 #pragma once
-
-#include <vector>
 
 #include "model/segments.h"
 #include "model/tet_mesh.h"
@@ -15,8 +13,5 @@ ColouredMesh outside_of(const TetMesh& mesh, const Segments& segments, bool y_up
 
 // Half as wide and high, four pixels' mean each.
 Image halved(const Image& image);
-
-// One below the other; all equally wide, at least one.
-Image stacked(const std::vector<Image>& images);
 
 }  // namespace packmerger::bench

@@ -101,9 +101,8 @@ void figure_4(const FigureRun& run) {
                             static_cast<double>(divisions.back().divided.segments.count), name});
   }
   write_data(run, "fig4", data);
-  write_picture(
-      run, "fig4",
-      stacked({pair_of(divisions[0], divisions[1]), pair_of(divisions[2], divisions[3])}));
+  write_picture(run, "fig4_ab", pair_of(divisions[0], divisions[1]));
+  write_picture(run, "fig4_cd", pair_of(divisions[2], divisions[3]));
   write_plot(run, "fig4",
              {"Segments left by pre-merging",
               "least volume, % of the shell (with it the least cross-section)",
@@ -114,18 +113,22 @@ void figure_4(const FigureRun& run) {
 void figure_11a(const FigureRun& run) {
   const Mesh molecule = molecule_model();
   const ShapeSettings settings = read_profile("objet30").shape;
-  const Division without =
-      division(run, "without the rule", molecule, {0, settings.min_volume_fraction});
-  const Division with =
-      division(run, fmt::format("at least {:g} mm²", settings.min_glue_area_mm2), molecule,
-               {settings.min_glue_area_mm2, settings.min_volume_fraction});
-  write_data(run, "fig11a", {{"divisions", {told(without), told(with)}}});
-  write_picture(run, "fig11a", pair_of(without, with));
-  write_plot(run, "fig11a",
-             {"Cross-sections between the molecule's segments",
-              "cross-section, smallest first",
-              "mm²",
-              {ranked(without.name, without.areas_mm2, 1), ranked(with.name, with.areas_mm2, 1)}});
+  // More than a stick's own section, so that no cut may go through one.
+  constexpr double kMoreThanAStick_mm2 = 60;
+  std::vector<Division> divisions;
+  nlohmann::ordered_json data;
+  Plot plot{
+      "Cross-sections between the molecule's segments", "cross-section, smallest first", "mm²", {}};
+  for (const double area_mm2 : {0.0, settings.min_glue_area_mm2, kMoreThanAStick_mm2}) {
+    divisions.push_back(division(run, fmt::format("at least {:g} mm²", area_mm2), molecule,
+                                 {area_mm2, settings.min_volume_fraction}));
+    data["divisions"].push_back(told(divisions.back()));
+    plot.series.push_back(ranked(divisions.back().name, divisions.back().areas_mm2, 1));
+  }
+  write_data(run, "fig11a", data);
+  write_picture(run, "fig11a", pair_of(divisions[0], divisions[1]));
+  write_picture(run, "fig11a_60mm2", pair_of(divisions[0], divisions[2]));
+  write_plot(run, "fig11a", plot);
 }
 
 }  // namespace packmerger::bench

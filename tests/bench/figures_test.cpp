@@ -28,12 +28,9 @@ std::string text_of(const fs::path& path) { return read_file(path, 50'000'000); 
 TEST(Figures, WeightWritesDataPlotPicturesAndJobs) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "figures";
-  // the second run replaces what the first one wrote
-  for (int run = 0; run < 2; ++run) {
-    const ProcessResult result =
-        figures({"--only", "fig5", "--budget", "0.5", "--out", out.string()});
-    ASSERT_TRUE(result.status.ok()) << result.err;
-  }
+  const ProcessResult result =
+      figures({"--only", "fig5", "--budget", "0.5", "--out", out.string()});
+  ASSERT_TRUE(result.status.ok()) << result.err;
   const Json packings = Json::parse(text_of(out / "fig5.json"))["packings"];
   ASSERT_EQ(packings.size(), 3U);
   const std::string plot = text_of(out / "fig5.svg");
@@ -58,11 +55,15 @@ TEST(Figures, WeightWritesDataPlotPicturesAndJobs) {
   }
 }
 
-TEST(Figures, GroupRowTellsRatiosAndThatLittleIsGained) {
+TEST(Figures, GroupRowTellsItsRatios) {
   const TemporaryFolder folder;
-  const ProcessResult result = figures(
-      {"--only", "fig13", "--budget", "0.5", "--markdown", "--out", folder.path().string()});
-  ASSERT_TRUE(result.status.ok()) << result.err;
+  // the second run replaces what the first one wrote
+  ProcessResult result;
+  for (int run = 0; run < 2; ++run) {
+    result = figures(
+        {"--only", "group_1", "--budget", "0.5", "--markdown", "--out", folder.path().string()});
+    ASSERT_TRUE(result.status.ok()) << result.err;
+  }
   const Json row = Json::parse(text_of(folder.path() / "fig13_group_1.json"));
   const Json job = Json::parse(text_of(folder.path() / "jobs" / "group_1" / "job.json"));
   const Json& packed = job["estimates"]["packed"];
