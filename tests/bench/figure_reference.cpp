@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "bench/figure.h"
 #include "bench/models.h"
@@ -68,6 +69,9 @@ void figure_7(const FigureRun& run) {
     for (int i = 0; i < kOrders; ++i) {
       random.shuffle(order);
       costs.push_back(packer.pack(drawn.maps, drawn.volumes_mm3, order).cost);
+      if (!std::isfinite(costs.back()))
+        throw Error(Fault::kInternal, "The paper's packer found no place for a part of figure 7",
+                    "Give few_parts() a larger tray.");
     }
     const double packing_s = packing.seconds() / kOrders;
     const double mean_cost = std::accumulate(costs.begin(), costs.end(), 0.0) / kOrders;

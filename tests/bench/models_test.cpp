@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 
 #include "base/error.h"
+#include "bench/balls_and_sticks.h"
 #include "fixtures/models.h"
 #include "fixtures/profiles.h"
 #include "printers/estimate.h"
@@ -80,6 +82,27 @@ TEST(FigureModels, ArchFitsTheUprintPlusInNoWay) {
     EXPECT_GT(box.sizes().head<2>().maxCoeff(), tray.x()) << "lying, turned by " << degree;
     EXPECT_GT(box.sizes().y(), tray.z()) << "on edge, turned by " << degree;
   }
+}
+
+TEST(BallsAndSticks, DumbBell) {
+  constexpr double kBall = 10, kStick = 4, kApart = 40, kPi = std::numbers::pi;
+  const Vec3 far(kApart / std::sqrt(2), 0, kApart / std::sqrt(2));
+  const Mesh mesh =
+      closed_mesh(balls_and_sticks({{Vec3::Zero(), kBall}, {far, kBall}}, {{0, 1}}, kStick, 1));
+  EXPECT_EQ(pieces_by_euler(mesh), 1);
+  EXPECT_FALSE(self_intersects(mesh));
+  for (const auto vertex : mesh.vertices()) {
+    const Vec3& p = mesh.point(vertex);
+    const double from_axis = p.cross(far.normalized()).norm();
+    const double nearest = std::min({std::abs(p.norm() - kBall), std::abs((p - far).norm() - kBall),
+                                     std::abs(from_axis - kStick)});
+    EXPECT_NEAR(nearest, 0, 1e-9);
+  }
+  const double rim = std::sqrt(kBall * kBall - kStick * kStick);  // from a ball's centre
+  const double cap = kPi * std::pow(kBall - rim, 2) * (2 * kBall + rim) / 3;
+  const double volume =
+      2 * (4.0 / 3 * kPi * std::pow(kBall, 3) - cap) + kPi * kStick * kStick * (kApart - 2 * rim);
+  EXPECT_NEAR(volume_mm3(mesh), volume, 0.01 * volume);
 }
 
 TEST(FigureModels, Molecule) {
