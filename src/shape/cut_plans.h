@@ -18,7 +18,7 @@ namespace packmerger {
 struct CutSearch {
   double support_angle = 0;   // radians; V_s is judged for it
   double part_price_mm3 = 0;  // a part more must save this much support
-  int effort = 600;           // changes tried, over all candidates
+  int effort = 1000;          // changes tried, over all candidates
   int samples = 15000;        // about so many points stand for the matter
 };
 

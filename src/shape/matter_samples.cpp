@@ -12,7 +12,6 @@
 namespace packmerger {
 namespace {
 
-constexpr double kReach = 1.6;     // spacings: links are not longer than this
 constexpr double kCoverage = 1.5;  // cubes that matter touches, over those it would fill
 
 using Cube = std::uint64_t;
@@ -89,7 +88,6 @@ int index_of(const std::vector<Cube>& cubes, Cube cube) {
 }
 
 void link(MatterSamples& samples, const std::vector<Cube>& cubes) {
-  const double reach = kReach * samples.spacing_mm;
   double lengths = 0;
   for (int i = 0; i < samples.count(); ++i) {
     samples.first_link.push_back(static_cast<int>(samples.links.size()));
@@ -101,7 +99,7 @@ void link(MatterSamples& samples, const std::vector<Cube>& cubes) {
             static_cast<int>(std::lower_bound(cubes.begin(), cubes.end(), low) - cubes.begin());
         for (; at < samples.count() && cubes[at] <= low + 2; ++at) {
           const double length = (samples.points[at] - samples.points[i]).norm();
-          if (at == i || length > reach) continue;
+          if (at == i) continue;
           samples.links.push_back(at);
           lengths += length / 2;  // each is met from both ends
         }

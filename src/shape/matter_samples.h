@@ -17,7 +17,8 @@ struct MatterSamples {
   std::vector<double> volumes_mm3;  // sum to the mesh's volume
   std::vector<Vec3> areas_mm2;      // of the mesh's boundary nearby, as outward vectors
   std::vector<int> of_tetrahedron;  // a sample in or beside each tetrahedron
-  // Links between samples of neighbouring cubes, as compressed rows. A plane through the matter
+  // Links between samples of all neighbouring cubes, so that what is connected stays connected, as
+  // compressed rows. A plane through the matter
   // crosses one link for every area_per_link_mm2 of its cross-section, on average.
   std::vector<int> first_link;
   std::vector<int> links;

@@ -217,7 +217,7 @@ TEST(CutPlans, ASphereStandsFarBetterThanWhole) {
   const double solid_mm3 = 67000;
   EXPECT_LT(plan_and_check(mesh, settings, brief()), 0.5 * solid_mm3);
   settings.parts = 7;
-  EXPECT_LT(plan_and_check(mesh, settings, brief()), 0.63 * solid_mm3);
+  EXPECT_LT(plan_and_check(mesh, settings, brief()), 0.7 * solid_mm3);
 }
 
 TEST(CutPlans, ABoxFallsIntoPlates) {
@@ -283,7 +283,7 @@ RC_GTEST_PROP(CutPlans, KeepTheMeshAndThePartsSound, (std::uint64_t seed)) {
   settings.parts = 3 + static_cast<int>(random.below(6));
   CutSearch search = brief();
   search.effort = 10;
-  search.samples = 1500;
+  search.samples = 1000;
   search.support_angle = random.below(2) == 0 ? 0 : radians(45);
   for (const CutPlan& plan : cut_plans(whole, settings, kHuge, search, seed, Progress())) {
     TetMesh mesh = whole;

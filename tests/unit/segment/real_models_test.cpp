@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "fixtures/models.h"
 #include "part_checks.h"
+#include "shape/cut_plans.h"
 #include "shape/manifold_parts.h"
 #include "shape/premerge.h"
 #include "shape/repair.h"
@@ -86,6 +87,46 @@ void divide_and_check(const TriangleSoup& soup) {
     make_manifold(mesh, merged, Progress());
     checks::expect_proper_parts(mesh, merged);
   }
+}
+
+// Divided by planes: parts are proper and as planned, and the surface is not moved.
+void cut_and_check(const TriangleSoup& soup) {
+  Warnings warnings;
+  const Mesh model = repair(fixtures::scaled_to(soup, 100), warnings, Progress());
+  const TetMesh whole = solidify(model, ShapeSettings(), true, warnings, Progress()).tets;
+  const double volume = total_volume_mm3(whole);
+  const ShapeSettings settings;
+  const BuildVolume build{Vec3(294, 192, 148.6), radians(30)};
+  CutSearch search;
+  search.part_price_mm3 = 0.02 * volume;
+  search.effort = 100;
+  search.samples = 8000;
+  const auto plans = cut_plans(whole, settings, build, search, 1, Progress());
+  ASSERT_FALSE(plans.empty());
+  for (const CutPlan& plan : plans) {
+    TetMesh mesh = whole;
+    const Segments cut = cut_as_planned(mesh, plan, Progress());
+    checks::expect_sound_mesh(mesh, volume);
+    checks::expect_proper_parts(mesh, cut);
+    EXPECT_NEAR(cut.count, plan.parts, 1);
+    const Segments merged = premerge(mesh, cut, settings, build, warnings, Progress());
+    checks::expect_proper_parts(mesh, merged);
+    EXPECT_GE(merged.count, plan.parts - 2);
+    EXPECT_LE(merged.count, settings.parts);
+    for (const FaceSide side : {FaceSide::kOutside, FaceSide::kCavity}) {
+      const TriangleSoup was = boundary_soup(whole, side);
+      const TriangleSoup is = boundary_soup(mesh, side);
+      EXPECT_LT(furthest_mm(is, was), 0.1);
+      EXPECT_LT(furthest_mm(was, is), 0.1);
+    }
+  }
+}
+
+TEST(RealModels, TorusByPlanes) { cut_and_check(fixtures::torus(35, 15, 64, 32)); }
+
+TEST(RealModels, BunnyByPlanes) {
+  PACKMERGER_TEST_MODEL(soup, "stanford-bunny.obj");
+  cut_and_check(soup);
 }
 
 TEST(RealModels, Bunny) {
