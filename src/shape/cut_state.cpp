@@ -188,7 +188,7 @@ bool CutBench::glue_is_enough(const CutState& state, const std::vector<Cell>& pa
   for (int i = 0; i < static_cast<int>(parts.size()); ++i) {
     std::map<int, int> links;
     for (const int sample : parts[i].samples)
-      for (const int other : samples_.linked_to(sample)) ++links[state.piece_of_sample[other]];
+      for (const int other : samples_.near_to(sample)) ++links[state.piece_of_sample[other]];
     for (const auto& [piece, count] : links)
       if (piece != first + i && count < least_links) return false;
   }

@@ -1,6 +1,7 @@
 #include "shape/cut_tree.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace packmerger {
 namespace {
@@ -38,7 +39,7 @@ void append_in_order(const CutTree& tree, int node, Ends& ends, std::vector<char
 
 // Gives each face-connected piece of the region to the one of node.next whose samples it holds.
 void hand_out_pieces(const TetMesh& mesh, int region, const CutNode& node, Ends& ends,
-                     const PlaneCutter& cutter, const MatterSamples& samples,
+                     const PlaneCutter& cutter, const MatterSamples& samples, double least_mm3,
                      std::vector<int>& labels) {
   std::vector<int> next_of_sample(samples.count(), -1);
   for (std::size_t i = 0; i < node.members->size(); ++i)
@@ -60,7 +61,13 @@ void hand_out_pieces(const TetMesh& mesh, int region, const CutNode& node, Ends&
       }
     }
     const auto most = std::max_element(votes.begin(), votes.end()) - votes.begin();
-    for (const int t : piece) labels[t] = ends.of(node.next[most]);
+    // Where a neck too thin for the samples holds large pieces together, it is cut along them.
+    const bool follow_samples =
+        std::accumulate(votes.begin(), votes.end(), 0.0) - votes[most] > least_mm3;
+    for (const int t : piece) {
+      const int next = next_of_sample[samples.of_tetrahedron[cutter.origin(t)]];
+      labels[t] = ends.of(node.next[follow_samples && next >= 0 ? next : most]);
+    }
   }
 }
 
@@ -83,7 +90,7 @@ Segments cut_apart(TetMesh& mesh, const CutTree& tree, const MatterSamples& samp
       cutter.cut(region, node.plane, ends.of(node.next[0]), ends.of(node.next[1]));
     if (node.kind == CutNode::Kind::kPieces) {
       cutter.link();
-      hand_out_pieces(mesh, region, node, ends, cutter, samples, labels);
+      hand_out_pieces(mesh, region, node, ends, cutter, samples, least_mm3, labels);
     }
   }
   cutter.link();

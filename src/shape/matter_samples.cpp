@@ -12,6 +12,7 @@
 namespace packmerger {
 namespace {
 
+constexpr double kShort = 1.6;     // spacings: the longest short link
 constexpr double kCoverage = 1.5;  // cubes that matter touches, over those it would fill
 
 using Cube = std::uint64_t;
@@ -88,9 +89,12 @@ int index_of(const std::vector<Cube>& cubes, Cube cube) {
 }
 
 void link(MatterSamples& samples, const std::vector<Cube>& cubes) {
+  const double reach = kShort * samples.spacing_mm;
   double lengths = 0;
+  std::vector<int> far;
   for (int i = 0; i < samples.count(); ++i) {
     samples.first_link.push_back(static_cast<int>(samples.links.size()));
+    far.clear();
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y) {
         // three cubes in a row follow each other in the sorted list
@@ -98,12 +102,14 @@ void link(MatterSamples& samples, const std::vector<Cube>& cubes) {
         auto at =
             static_cast<int>(std::lower_bound(cubes.begin(), cubes.end(), low) - cubes.begin());
         for (; at < samples.count() && cubes[at] <= low + 2; ++at) {
-          const double length = (samples.points[at] - samples.points[i]).norm();
           if (at == i) continue;
-          samples.links.push_back(at);
-          lengths += length / 2;  // each is met from both ends
+          const double length = (samples.points[at] - samples.points[i]).norm();
+          (length > reach ? far : samples.links).push_back(at);
+          if (length <= reach) lengths += length / 2;  // each is met from both ends
         }
       }
+    samples.first_long_link.push_back(static_cast<int>(samples.links.size()));
+    samples.links.insert(samples.links.end(), far.begin(), far.end());
   }
   samples.first_link.push_back(static_cast<int>(samples.links.size()));
   // A link at a random angle crosses a plane with half its length on average.

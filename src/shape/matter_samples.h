@@ -18,9 +18,10 @@ struct MatterSamples {
   std::vector<Vec3> areas_mm2;      // of the mesh's boundary nearby, as outward vectors
   std::vector<int> of_tetrahedron;  // a sample in or beside each tetrahedron
   // Links between samples of all neighbouring cubes, so that what is connected stays connected, as
-  // compressed rows. A plane through the matter
-  // crosses one link for every area_per_link_mm2 of its cross-section, on average.
+  // compressed rows, the short ones first. A plane through the matter crosses one short link for
+  // every area_per_link_mm2 of its cross-section, on average.
   std::vector<int> first_link;
+  std::vector<int> first_long_link;
   std::vector<int> links;
   double area_per_link_mm2 = 0;
   std::vector<std::vector<int>> round_cavities;  // the samples on each cavity's surface, ascending
@@ -30,6 +31,10 @@ struct MatterSamples {
   std::span<const int> linked_to(int sample) const {
     return {links.data() + first_link[sample],
             static_cast<std::size_t>(first_link[sample + 1] - first_link[sample])};
+  }
+  std::span<const int> near_to(int sample) const {  // the short links
+    return {links.data() + first_link[sample],
+            static_cast<std::size_t>(first_long_link[sample] - first_link[sample])};
   }
 };
 

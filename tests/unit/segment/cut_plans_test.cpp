@@ -137,7 +137,7 @@ TEST(MatterSamples, HoldTheVolumeAndTheCrossSections) {
     const Plane plane(random_direction(random), Vec3(10 * random_direction(random)));
     int crossed = 0;
     for (int i = 0; i < samples.count(); ++i)
-      for (const int other : samples.linked_to(i))
+      for (const int other : samples.near_to(i))
         crossed += plane.signedDistance(samples.points[i]) > 0 &&
                            plane.signedDistance(samples.points[other]) <= 0
                        ? 1
