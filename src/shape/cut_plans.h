@@ -32,10 +32,11 @@ struct CutPlan {
 };
 
 // Several divisions of the mesh, different in construction or number of parts, best first by
-// support and price of parts. None has more than settings.parts parts, a part below
-// settings.min_volume_fraction of V_o, a joint that is clearly below settings.min_glue_area_mm2 (as
-// far as samples tell; premerge sees to the rest), a part that fits `build` in none of the packer's
-// rotations, or a cavity with one part all round it. Empty when no such division was found.
+// support and price of parts. As far as samples of the matter tell, none has more than
+// settings.parts parts, a part below settings.min_volume_fraction of V_o, a joint below
+// settings.min_glue_area_mm2, a part that fits `build` in none of the packer's rotations, or a
+// cavity with one part all round it. A tail thinner than the samples' spacing may escape them:
+// premerge and the packer see to the rest. Empty when no such division was found.
 //
 // Several constructions are made (cuts one after the other, over-cut and merged back; slabs;
 // bands with strips across their caps), and the best of each are improved by a large neighbourhood
