@@ -15,6 +15,7 @@ namespace {
 constexpr double kQuarter = std::numbers::pi / 2;
 constexpr int kColumnsAcross = 64;  // enough to rank ways up
 constexpr int kSpreadWays = 80;     // about 25 degrees apart
+constexpr std::size_t kFlatWays = 8;
 constexpr std::size_t kMemberWays = 3;
 constexpr std::size_t kRefinedWays = 3;
 constexpr double kRefineFrom = 0.2;  // radians
@@ -166,7 +167,8 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
 }
 
 // Beside the rotation set: the part's own best ways up, which no fixed step hits. Directions spread
-// over the sphere first, then the best of them refined; a merged part takes its members' best.
+// over the sphere, the best of them refined, and large flat facets, as cuts leave them; a merged
+// part takes its members' best.
 void PartMaker::add_own_ways(const Part& part,
                              const std::function<double(const Mat3&, bool)>& add) {
   if (part.items.size() > 1) {
@@ -177,6 +179,7 @@ void PartMaker::add_own_ways(const Part& part,
     }
     return;
   }
+  for (const Mat3& base : ways_on_flat_facets(surfaces(part.items), kFlatWays)) add(base, true);
   std::vector<std::pair<double, Mat3>> tried;
   for (const Mat3& base : spread_ways(kSpreadWays)) tried.emplace_back(add(base, false), base);
   std::stable_sort(tried.begin(), tried.end(),

@@ -1,8 +1,10 @@
 #include "pack/ways_up.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "base/random.h"
@@ -11,6 +13,8 @@ namespace packmerger {
 namespace {
 
 constexpr double kFitTolerance_mm = 1e-9;
+constexpr double kBins = 50;         // a bin is about a degree wide
+constexpr double kFlatShare = 0.01;  // of the surface: facets of one direction that count as flat
 constexpr int kFitSamples = 3000;
 constexpr int kFitRefinements = 400;
 
@@ -80,6 +84,36 @@ std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surf
     consider(nudged(best, 0.3 * (1 - static_cast<double>(i) / kFitRefinements), random));
   if (least > kFitTolerance_mm) return std::nullopt;
   return FittingWay{best, size_turned(surfaces, best)};
+}
+
+std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces, std::size_t most) {
+  // Areas summed by direction, on a lattice fine enough that facets of one plane share a bin or lie
+  // in neighbouring ones.
+  std::map<std::array<long, 3>, Vec3> bins;  // area-weighted normals
+  double total = 0;
+  for (const TriangleSoup& surface : surfaces)
+    for (const auto& [a, b, c] : surface.triangles) {
+      const Vec3& p = surface.points[static_cast<std::size_t>(a)];
+      const Vec3 area = (surface.points[static_cast<std::size_t>(b)] - p)
+                            .cross(surface.points[static_cast<std::size_t>(c)] - p) /
+                        2;
+      if (!(area.norm() > 0)) continue;
+      const Vec3 normal = area.normalized();
+      total += area.norm();
+      std::array<long, 3> bin{};
+      for (int i = 0; i < 3; ++i) bin[static_cast<std::size_t>(i)] = std::lround(normal[i] * kBins);
+      const auto [place, is_new] = bins.emplace(bin, area);
+      if (!is_new) place->second += area;
+    }
+  std::vector<Vec3> flats;
+  for (const auto& [bin, area] : bins)
+    if (area.norm() > kFlatShare * total) flats.push_back(area);
+  std::stable_sort(flats.begin(), flats.end(),
+                   [](const Vec3& a, const Vec3& b) { return a.norm() > b.norm(); });
+  std::vector<Mat3> ways;
+  for (std::size_t i = 0; i < std::min(most, flats.size()); ++i)
+    ways.push_back(Eigen::Quaterniond::FromTwoVectors(flats[i], -Vec3::UnitZ()).toRotationMatrix());
+  return ways;
 }
 
 }  // namespace packmerger
