@@ -16,77 +16,79 @@ HWY_BEFORE_NAMESPACE();
 namespace packmerger::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most 128 positions and 8 vectors at once, so that all stay in registers over all cells.
-constexpr hn::CappedTag<Height, 32> kHeights;
+constexpr hn::CappedTag<Height, kFallPositions> kHeights;
 using Heights = hn::VFromD<decltype(kHeights)>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(kHeights));
-constexpr int kMostVectors = kLanes < 32 ? 8 : 4;
-constexpr std::size_t kCellsBetweenLooks = 64;  // at whether all positions are too high by now
+constexpr int kVectorsOfBlock = kFallPositions / kLanes;
+// So many blocks that their vectors stay in registers over all cells.
+constexpr int kMostVectors = 8;
+constexpr int kBlocksTogether = std::max(1, kMostVectors / kVectorsOfBlock);
 
-static_assert(kLanes - 1 <= kFallReadAhead);
-
-// Writes the first `wanted` of the lanes.
-HWY_INLINE void store(Heights vector, Height* to, int wanted) {
-  if (wanted >= kLanes) {
-    hn::StoreU(vector, kHeights, to);
-    return;
-  }
-  HWY_ALIGN std::array<Height, kLanes> lanes;
-  hn::Store(vector, kHeights, lanes.data());
-  std::copy_n(lanes.begin(), wanted, to);
-}
-
-template <int kVectors>
-HWY_INLINE bool all_above(const Heights (&height)[kVectors], Height limit) {
-  Heights least = height[0];
-  for (int v = 1; v < kVectors; ++v) least = hn::Min(least, height[v]);
-  return hn::AllTrue(kHeights, hn::Gt(least, hn::Set(kHeights, limit)));
-}
-
-// kVectors of positions; field: of the first position.
-template <int kVectors>
-HWY_INLINE void fall_together(const Height* field, std::ptrdiff_t stride,
-                              std::span<const HeightCell> cells, Height floor, Height give_up_above,
-                              Height* heights, int wanted) {
-  Heights height[kVectors];
-  for (Heights& vector : height) vector = hn::Set(kHeights, floor);
-  for (std::size_t next = 0; next < cells.size();) {
-    const std::size_t end = std::min(next + kCellsBetweenLooks, cells.size());
-    for (; next < end; ++next) {
-      const HeightCell cell = cells[next];
-      const Height* below = field + cell.y * stride + cell.x;
-      const Heights value = hn::Set(kHeights, cell.value);
-      for (int v = 0; v < kVectors; ++v)
-        height[v] =
-            hn::Max(height[v], hn::SaturatedSub(hn::LoadU(kHeights, below + v * kLanes), value));
-    }
-    if (all_above(height, give_up_above)) break;
-  }
-  for (int v = 0; v < kVectors && v * kLanes < wanted; ++v)
-    store(height[v], heights + v * kLanes, wanted - v * kLanes);
-}
-
-// Calls loop(first position, number of vectors) with as many vectors as there are positions for.
-template <typename Loop>
-HWY_INLINE void in_blocks(int n, const Loop& loop) {
-  for (int first = 0; first < n; first += kMostVectors * kLanes) {
-    const int vectors = std::min(kMostVectors, (n - first + kLanes - 1) / kLanes);
+// Calls loop(first block, number of them) with at most kMost blocks at once.
+template <int kMost, typename Loop>
+HWY_INLINE void in_groups(std::size_t count, const Loop& loop) {
+  for (std::size_t first = 0; first < count; first += kMost) {
+    const std::size_t blocks = std::min<std::size_t>(kMost, count - first);
     const auto run = [&]<int... kLess>(std::integer_sequence<int, kLess...>) HWY_ATTR {
-      static_cast<void>((
-          (vectors == kLess + 1 && (loop(first, std::integral_constant<int, kLess + 1>{}), true)) ||
-          ...));
+      static_cast<void>(
+          ((blocks == kLess + 1 && (loop(first, std::integral_constant<int, kLess + 1>{}), true)) ||
+           ...));
     };
-    run(std::make_integer_sequence<int, kMostVectors>{});
+    run(std::make_integer_sequence<int, kMost>{});
   }
 }
 
-void fall(const Height* field_origin, std::ptrdiff_t stride, std::span<const HeightCell> cells,
-          int x, int y, Height floor, Height give_up_above, Height* heights, int n) {
-  const Height* field = field_origin + y * stride + x;
-  in_blocks(n, [&](int first, auto vectors) HWY_ATTR {
-    fall_together<vectors()>(field + first, stride, cells, floor, give_up_above, heights + first,
-                             n - first);
-  });
+template <int kBlocks>
+HWY_INLINE void raise_together(const FallBlock* blocks, std::ptrdiff_t stride,
+                               std::span<const HeightCell> cells) {
+  constexpr int kVectors = kBlocks * kVectorsOfBlock;
+  Heights height[kVectors];
+  const Height* fields[kBlocks];
+  for (int b = 0; b < kBlocks; ++b) fields[b] = blocks[b].field;
+  for (int v = 0; v < kVectors; ++v)
+    height[v] =
+        hn::LoadU(kHeights, blocks[v / kVectorsOfBlock].heights + v % kVectorsOfBlock * kLanes);
+  for (const HeightCell cell : cells) {
+    const std::ptrdiff_t at = cell.y * stride + cell.x;
+    const Heights value = hn::Set(kHeights, cell.value);
+    for (int v = 0; v < kVectors; ++v) {
+      const Height* below = fields[v / kVectorsOfBlock] + at + v % kVectorsOfBlock * kLanes;
+      height[v] = hn::Max(height[v], hn::SaturatedSub(hn::LoadU(kHeights, below), value));
+    }
+  }
+  for (int v = 0; v < kVectors; ++v)
+    hn::StoreU(height[v], kHeights,
+               blocks[v / kVectorsOfBlock].heights + v % kVectorsOfBlock * kLanes);
+}
+
+HWY_INLINE bool all_above_limit(const FallBlock& block) {
+  Heights least = hn::LoadU(kHeights, block.heights);
+  for (int v = 1; v < kVectorsOfBlock; ++v)
+    least = hn::Min(least, hn::LoadU(kHeights, block.heights + v * kLanes));
+  return hn::AllTrue(kHeights, hn::Gt(least, hn::Set(kHeights, block.give_up_above)));
+}
+
+HWY_INLINE std::size_t worth_going_on(std::span<FallBlock> blocks) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (!all_above_limit(blocks[i])) std::swap(blocks[kept++], blocks[i]);
+  return kept;
+}
+
+std::size_t fall(std::span<FallBlock> blocks, std::ptrdiff_t stride,
+                 std::span<const HeightCell> cells) {
+  std::size_t kept = worth_going_on(blocks);
+  // A look costs about as much as a cell. The first come early: few cells rule out most blocks.
+  std::size_t before_look = 8;
+  for (std::size_t next = 0; next < cells.size() && kept > 0; before_look *= 2) {
+    const auto some = cells.subspan(next, std::min(before_look, cells.size() - next));
+    in_groups<kBlocksTogether>(kept, [&](std::size_t first, auto count) HWY_ATTR {
+      raise_together<count()>(&blocks[first], stride, some);
+    });
+    kept = worth_going_on(blocks.first(kept));
+    next += some.size();
+  }
+  return kept;
 }
 
 #if HWY_TARGET != HWY_SCALAR
@@ -96,13 +98,14 @@ constexpr hn::RebindToUnsigned<decltype(kHeights)> kPairs;
 constexpr hn::RepartitionToWide<decltype(kPairs)> kSums;
 using Sums = hn::VFromD<decltype(kSums)>;
 
-template <int kVectors>
-HWY_INLINE void sum_together(const Height* field, std::ptrdiff_t stride,
-                             std::span<const HeightCell> cells, std::int32_t* sums, int wanted) {
+template <int kBlocks>
+HWY_INLINE void sum_together(const FallBlock* blocks, std::ptrdiff_t stride,
+                             std::span<const HeightCell> cells, std::int32_t* sums) {
+  constexpr int kVectors = kBlocks * kVectorsOfBlock;
   const auto above_zero = [&](const HeightCell& cell, int v) HWY_ATTR {
-    const Height* below = field + cell.y * stride + cell.x;
-    return hn::BitCast(kPairs,
-                       hn::Max(hn::LoadU(kHeights, below + v * kLanes), hn::Zero(kHeights)));
+    const Height* below =
+        blocks[v / kVectorsOfBlock].field + cell.y * stride + cell.x + v % kVectorsOfBlock * kLanes;
+    return hn::BitCast(kPairs, hn::Max(hn::LoadU(kHeights, below), hn::Zero(kHeights)));
   };
   Sums even[kVectors];
   Sums odd[kVectors];
@@ -123,28 +126,32 @@ HWY_INLINE void sum_together(const Height* field, std::ptrdiff_t stride,
   for (int v = 0; v < kVectors; ++v) {
     hn::Store(even[v], kSums, lanes.data());
     hn::Store(odd[v], kSums, lanes.data() + kLanes / 2);
-    for (int i = 0; i < std::min(kLanes, wanted - v * kLanes); ++i)
+    for (int i = 0; i < kLanes; ++i)
       sums[v * kLanes + i] =
           static_cast<std::int32_t>(lanes[static_cast<std::size_t>(i / 2 + i % 2 * (kLanes / 2))]);
   }
 }
 
-void sum_field(const Height* field_origin, std::ptrdiff_t stride, std::span<const HeightCell> cells,
-               int x, int y, std::int32_t* sums, int n) {
-  const Height* field = field_origin + y * stride + x;
-  in_blocks(n, [&](int first, auto vectors) HWY_ATTR {
-    sum_together<vectors()>(field + first, stride, cells, sums + first, n - first);
-  });
+void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
+               std::span<const HeightCell> cells, std::int32_t* sums) {
+  in_groups<std::max(1, kBlocksTogether / 2)>(
+      blocks.size(), [&](std::size_t first, auto count) HWY_ATTR {
+        sum_together<count()>(&blocks[first], stride, cells,
+                              sums + first * static_cast<std::size_t>(kFallPositions));
+      });
 }
 
 #else
 
-void sum_field(const Height* field_origin, std::ptrdiff_t stride, std::span<const HeightCell> cells,
-               int x, int y, std::int32_t* sums, int n) {
-  std::fill_n(sums, n, 0);
-  for (const HeightCell& cell : cells) {
-    const Height* field = field_origin + (y + cell.y) * stride + x + cell.x;
-    for (int i = 0; i < n; ++i) sums[i] += std::max<Height>(0, field[i]);
+void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
+               std::span<const HeightCell> cells, std::int32_t* sums) {
+  for (const FallBlock& block : blocks) {
+    std::fill_n(sums, kFallPositions, 0);
+    for (const HeightCell& cell : cells) {
+      const Height* below = block.field + cell.y * stride + cell.x;
+      for (int i = 0; i < kFallPositions; ++i) sums[i] += std::max<Height>(0, below[i]);
+    }
+    sums += kFallPositions;
   }
 }
 
@@ -159,15 +166,14 @@ namespace packmerger {
 HWY_EXPORT(fall);
 HWY_EXPORT(sum_field);
 
-void fall(const Height* field_origin, std::ptrdiff_t stride, std::span<const HeightCell> cells,
-          int x, int y, Height floor, Height give_up_above, Height* heights, int n) {
-  HWY_DYNAMIC_DISPATCH(fall)
-  (field_origin, stride, cells, x, y, floor, give_up_above, heights, n);
+std::size_t fall(std::span<FallBlock> blocks, std::ptrdiff_t stride,
+                 std::span<const HeightCell> cells) {
+  return HWY_DYNAMIC_DISPATCH(fall)(blocks, stride, cells);
 }
 
-void sum_field(const Height* field_origin, std::ptrdiff_t stride, std::span<const HeightCell> cells,
-               int x, int y, std::int32_t* sums, int n) {
-  HWY_DYNAMIC_DISPATCH(sum_field)(field_origin, stride, cells, x, y, sums, n);
+void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
+               std::span<const HeightCell> cells, std::int32_t* sums) {
+  HWY_DYNAMIC_DISPATCH(sum_field)(blocks, stride, cells, sums);
 }
 
 }  // namespace packmerger

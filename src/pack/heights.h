@@ -17,6 +17,8 @@ struct HeightCell {
   std::int16_t x = 0;
   std::int16_t y = 0;
   Height value = 0;
+
+  bool operator==(const HeightCell&) const = default;
 };
 
 // Length of a unit, mm, for a build volume of this height: 1/64, or more where the sum of two

@@ -77,52 +77,72 @@ class Rating {
   bool empty_;
 };
 
-// The largest value in [0, most] that passes, given that 0 does and that none passes above one that
-// does not.
-template <typename Passes>
-std::int64_t largest(std::int64_t most, const Passes& passes) {
-  std::int64_t low = 0;
-  std::int64_t high = most;
-  while (low < high) {
-    const std::int64_t middle = (low + high + 1) / 2;
-    if (passes(middle))
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  return low;
-}
-
 auto rank(const Spot& spot) { return std::tuple(spot.cost, spot.z, spot.y, spot.x, spot.rotation); }
+
+// The best of all rotations so far, and the blocks of positions that are looked at together: those
+// that come after them know what they found.
+struct Hunt {
+  static constexpr std::size_t kMostBlocks = 64;
+
+  Hunt()
+      : xs(kMostBlocks),
+        ys(kMostBlocks),
+        heights(kMostBlocks * kFallPositions),
+        sums(kMostBlocks * kFallPositions) {
+    blocks.reserve(kMostBlocks);
+  }
+
+  std::optional<Spot> best;
+  double dearest = std::numeric_limits<double>::infinity();  // that is still worth a look
+
+  std::vector<FallBlock> blocks;
+  std::vector<Range> xs;  // of the block with the same heights
+  std::vector<int> ys;
+  std::vector<Height> heights;
+  std::vector<std::int32_t> sums;
+
+  std::size_t index_of(const FallBlock& block) const {
+    return static_cast<std::size_t>(block.heights - heights.data()) / kFallPositions;
+  }
+
+  void offer(const Spot& spot) {
+    best = spot;
+    dearest = spot.cost + kRounding * std::abs(spot.cost);
+  }
+};
 
 // All positions of one rotation.
 class Scan {
  public:
   Scan(const TrayState& tray, const RotatedPart& part, int rotation, double volume_mm3,
-       const TraySpec& spec, const PlaceRules& rules, std::optional<Spot>& best)
+       const TraySpec& spec, const PlaceRules& rules)
       : tray_(tray),
         part_(part),
         rotation_(rotation),
         spec_(spec),
-        rules_(rules),
-        best_(best),
-        rating_(tray, part, volume_mm3, spec) {}
+        rating_(tray, part, volume_mm3, spec),
+        xs_(intersection(intersection(inside_tray(part, spec, 0), reachable(0)), rules.x)),
+        ys_(intersection(intersection(inside_tray(part, spec, 1), reachable(1)), rules.y)),
+        highest_(rules.on_plate_only ? 0 : spec.ceiling() - part.rise) {
+    if (part.rise > spec.ceiling() || xs_.empty() || ys_.empty()) return;
+    const int y = rating_.least_growth(ys_, 1);
+    least_x_ = rating_.least_growth(xs_, 0);
+    bound_ =
+        std::min(least_bound(xs_, y, 0, 0), least_bound(xs_, std::max(y - 1, ys_.first), 0, 0));
+  }
 
-  void run() {
-    const Range xs =
-        intersection(intersection(inside_tray(part_, spec_, 0), reachable(0)), rules_.x);
-    const Range ys =
-        intersection(intersection(inside_tray(part_, spec_, 1), reachable(1)), rules_.y);
-    if (xs.empty() || ys.empty() || part_.rise > spec_.ceiling()) return;
-    least_x_ = rating_.least_growth(xs, 0);
-    least_y_ = rating_.least_growth(ys, 1);
-    least_x_range_ = xs;
-    least_y_range_ = ys;
-    limit();
-    for (int y = ys.first; y <= ys.last && highest_ >= 0; ++y) {
-      if (best_ && least_bound(y, 0, 0) > dearest_) continue;
-      scan_row(xs, y);
-    }
+  // No position costs less; infinity where there is none.
+  double bound() const { return bound_; }
+
+  void run(Hunt& hunt) {
+    limits_.assign(static_cast<std::size_t>(blocks_of_row()), highest_);
+    hunt.blocks.clear();
+    for (int y = ys_.first; y <= ys_.last; ++y)
+      for (int block = 0; block < blocks_of_row(); ++block) {
+        add_block(hunt, block, y);
+        if (hunt.blocks.size() == Hunt::kMostBlocks) rate(hunt);
+      }
+    if (!hunt.blocks.empty()) rate(hunt);
   }
 
  private:
@@ -134,87 +154,97 @@ class Scan {
     return {0, static_cast<int>(std::ceil(end)) + spec_.growth()};
   }
 
-  // The bound at the best column, in row y.
-  double least_bound(int y, Height z, std::int64_t waste) const {
-    const int before = std::max(least_x_ - 1, least_x_range_.first);
-    return std::min(rating_.bound(least_x_, y, z, waste), rating_.bound(before, y, z, waste));
+  // The bound at the best of these columns, in row y.
+  double least_bound(const Range& xs, int y, Height z, std::int64_t waste) const {
+    const int x = std::clamp(least_x_, xs.first, xs.last);
+    const int before = std::clamp(least_x_ - 1, xs.first, xs.last);
+    const double bound = rating_.bound(x, y, z, waste);
+    return before == x ? bound : std::min(bound, rating_.bound(before, y, z, waste));
   }
 
-  bool worth_it(Height z, std::int64_t waste) const {
-    const int before = std::max(least_y_ - 1, least_y_range_.first);
-    return least_bound(least_y_, z, waste) <= dearest_ || least_bound(before, z, waste) <= dearest_;
-  }
+  int blocks_of_row() const { return (xs_.count() + kFallPositions - 1) / kFallPositions; }
 
-  // The height and the waste above which no position costs less than the best; highest_ < 0: none
-  // does.
-  void limit() {
-    highest_ = rules_.on_plate_only ? 0 : spec_.ceiling() - part_.rise;
-    most_waste_ = static_cast<std::int64_t>(part_.hang.size()) * spec_.ceiling();
-    if (!best_) return;
-    dearest_ = best_->cost + kRounding * std::abs(best_->cost);
-    if (!worth_it(0, 0)) {
-      highest_ = -1;
-      return;
+  // The greatest height at which a position of the block is worth a look; -1: none is. It is sought
+  // from the one of the row before on, which is about the same.
+  int limit(const Hunt& hunt, const Range& xs, int y, int known) const {
+    if (!hunt.best) return highest_;
+    const auto worth_it = [&](int z) {
+      return least_bound(xs, y, static_cast<Height>(z), 0) <= hunt.dearest;
+    };
+    int low = -1;             // worth it, or below all
+    int high = highest_ + 1;  // not worth it, or above all
+    const bool rising = known < 0 || worth_it(known);
+    (rising ? low : high) = known;
+    for (int step = 1; low + 1 < high; step *= 2) {
+      const int next = rising ? std::min(low + step, high - 1) : std::max(high - step, low + 1);
+      const bool passes = worth_it(next);
+      (passes ? low : high) = next;
+      if (passes != rising) break;
     }
-    highest_ = static_cast<int>(
-        largest(highest_, [&](std::int64_t z) { return worth_it(static_cast<Height>(z), 0); }));
-    most_waste_ = largest(most_waste_, [&](std::int64_t waste) { return worth_it(0, waste); });
-  }
-
-  void scan_row(const Range& xs, int y) {
-    const int count = xs.count();
-    heights_.resize(static_cast<std::size_t>(count) + kFallReadAhead);
-    fall(tray_.upper.origin(), tray_.upper.stride(), part_.reach, xs.first, y, 0,
-         static_cast<Height>(highest_), heights_.data(), count);
-    for (int i = 0; i < count;) {
-      if (heights_[static_cast<std::size_t>(i)] > highest_) {
-        ++i;
-        continue;
-      }
-      int end = i + 1;
-      while (end < count && end - i < kRun && heights_[static_cast<std::size_t>(end)] <= highest_)
-        ++end;
-      rate(xs.first, y, i, end);
-      i = end;
+    while (low + 1 < high) {
+      const int middle = low + (high - low) / 2;
+      (worth_it(middle) ? low : high) = middle;
     }
+    return low;
   }
 
-  void rate(int first, int y, int begin, int end) {
-    sum_field(tray_.surface.origin(), tray_.surface.stride(), part_.hang, first + begin, y, sums_,
-              end - begin);
-    for (int i = begin; i < end; ++i) {
-      const Height z = heights_[static_cast<std::size_t>(i)];
-      if (z > highest_) continue;
-      const std::int64_t waste = rating_.waste(z, sums_[i - begin]);
-      if (waste > most_waste_) continue;
-      Spot here{rotation_, first + i, y, z, 0, 0};
-      here.cost = rating_.cost(here.x, y, z, waste);
-      if (best_ && !(rank(here) < rank(*best_))) continue;
+  void add_block(Hunt& hunt, int block, int y) {
+    const int first = xs_.first + block * kFallPositions;
+    const Range xs{first, std::min(first + kFallPositions - 1, xs_.last)};
+    int& known = limits_[static_cast<std::size_t>(block)];
+    known = limit(hunt, xs, y, known);
+    if (known < 0) return;
+    const std::size_t index = hunt.blocks.size();
+    Height* heights = &hunt.heights[index * kFallPositions];
+    std::fill_n(heights, xs.count(), Height{0});
+    std::fill_n(heights + xs.count(), kFallPositions - xs.count(), kNoPosition);
+    hunt.blocks.push_back({&tray_.upper.origin()[y * tray_.upper.stride() + first], heights,
+                           static_cast<Height>(known)});
+    hunt.xs[index] = xs;
+    hunt.ys[index] = y;
+  }
+
+  void rate(Hunt& hunt) {
+    hunt.blocks.resize(fall(hunt.blocks, tray_.upper.stride(), part_.reach));
+    for (FallBlock& block : hunt.blocks) {
+      const std::size_t index = hunt.index_of(block);
+      block.field =
+          &tray_.surface.origin()[hunt.ys[index] * tray_.surface.stride() + hunt.xs[index].first];
+    }
+    sum_field(hunt.blocks, tray_.surface.stride(), part_.hang, hunt.sums.data());
+    for (std::size_t b = 0; b < hunt.blocks.size(); ++b)
+      rate(hunt, hunt.blocks[b], &hunt.sums[b * kFallPositions]);
+    hunt.blocks.clear();
+  }
+
+  void rate(Hunt& hunt, const FallBlock& block, const std::int32_t* sums) const {
+    const std::size_t index = hunt.index_of(block);
+    const Range& xs = hunt.xs[index];
+    for (int i = 0; i < xs.count(); ++i) {
+      const Height z = block.heights[i];
+      if (z > block.give_up_above) continue;
+      const std::int64_t waste = rating_.waste(z, sums[i]);
+      Spot here{rotation_, xs.first + i, hunt.ys[index], z, 0, 0};
+      here.cost = rating_.cost(here.x, here.y, z, waste);
+      if (hunt.best && !(rank(here) < rank(*hunt.best))) continue;
       here.support_mm3 = part_.inside_support_mm3 + rating_.waste_mm3(waste);
-      const bool cheaper = !best_ || here.cost < best_->cost;
-      best_ = here;
-      if (cheaper) limit();
+      hunt.offer(here);
     }
   }
 
-  static constexpr int kRun = 64;
+  static constexpr Height kNoPosition = std::numeric_limits<Height>::max();
 
   const TrayState& tray_;
   const RotatedPart& part_;
   int rotation_;
   const TraySpec& spec_;
-  const PlaceRules& rules_;
-  std::optional<Spot>& best_;
   Rating rating_;
+  Range xs_;
+  Range ys_;
+  int highest_;
   int least_x_ = 0;
-  int least_y_ = 0;
-  Range least_x_range_;
-  Range least_y_range_;
-  int highest_ = 0;
-  std::int64_t most_waste_ = 0;
-  double dearest_ = 0;  // that is still worth rating
-  std::vector<Height> heights_;
-  std::int32_t sums_[kRun + kFallReadAhead];
+  double bound_ = std::numeric_limits<double>::infinity();
+  std::vector<int> limits_;  // by block of a row
 };
 
 }  // namespace
@@ -230,10 +260,20 @@ Range inside_tray(const RotatedPart& part, const TraySpec& spec, int axis) {
 
 std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart* const> rotations,
                               double volume_mm3, const TraySpec& spec, const PlaceRules& rules) {
-  std::optional<Spot> best;
+  std::vector<Scan> scans;
+  scans.reserve(rotations.size());
   for (std::size_t i = 0; i < rotations.size(); ++i)
-    Scan(tray, *rotations[i], static_cast<int>(i), volume_mm3, spec, rules, best).run();
-  return best;
+    scans.emplace_back(tray, *rotations[i], static_cast<int>(i), volume_mm3, spec, rules);
+  // The most promising first: what they find rules out most of the others.
+  std::vector<Scan*> order;
+  for (Scan& scan : scans) order.push_back(&scan);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Scan* a, const Scan* b) { return a->bound() < b->bound(); });
+  Hunt hunt;
+  for (Scan* scan : order)
+    if (scan->bound() < std::numeric_limits<double>::infinity() && scan->bound() <= hunt.dearest)
+      scan->run(hunt);
+  return hunt.best;
 }
 
 }  // namespace packmerger

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "base/no_height.h"
 
@@ -52,21 +54,41 @@ std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth
   return grown;
 }
 
-// Cells from all over the part first, so that a scan soon knows about how high it will come.
-std::vector<HeightCell> spread(const std::vector<HeightCell>& cells) {
-  constexpr std::size_t kStride = 16;
-  std::vector<HeightCell> result;
-  result.reserve(cells.size());
-  for (std::size_t i = 0; i < cells.size(); i += kStride) result.push_back(cells[i]);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (i % kStride != 0) result.push_back(cells[i]);
-  return result;
+bool same_look(const RotatedPart& a, const RotatedPart& b) {
+  constexpr double kRounding = 1e-9;  // sums in another order
+  return a.rise == b.rise && a.hang_sum == b.hang_sum && a.box.min() == b.box.min() &&
+         a.box.max() == b.box.max() &&
+         std::abs(a.inside_support_mm3 - b.inside_support_mm3) <=
+             kRounding * a.inside_support_mm3 &&
+         a.reach == b.reach && a.top == b.top && a.roof == b.roof && a.hang == b.hang;
 }
 
 }  // namespace
 
 double height_unit_mm(double build_z_mm) {
   return std::max(kFinestUnit_mm, build_z_mm / kMostUnits);
+}
+
+std::vector<HeightCell> decisive_first(const std::vector<HeightCell>& cells) {
+  constexpr int kTile = 4;
+  std::map<std::pair<int, int>, std::size_t> lowest_of;  // tile → index
+  const auto tile_of = [](int cell) { return (cell + 32768) / kTile; };
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::pair tile(tile_of(cells[i].y), tile_of(cells[i].x));
+    const auto [entry, is_new] = lowest_of.try_emplace(tile, i);
+    if (!is_new && cells[i].value < cells[entry->second].value) entry->second = i;
+  }
+  std::vector<bool> is_lowest(cells.size());
+  for (const auto& [tile, index] : lowest_of) is_lowest[index] = true;
+  std::vector<HeightCell> result;
+  result.reserve(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (is_lowest[i]) result.push_back(cells[i]);
+  std::stable_sort(result.begin(), result.end(),
+                   [](const HeightCell& a, const HeightCell& b) { return a.value < b.value; });
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (!is_lowest[i]) result.push_back(cells[i]);
+  return result;
 }
 
 RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
@@ -91,7 +113,7 @@ RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
       part.reach.push_back(cell(static_cast<int>(at) % grown_width - part.growth,
                                 static_cast<int>(at) / grown_width - part.growth,
                                 rounded_down(grown[at] - slack)));
-  part.reach = spread(part.reach);
+  part.reach = decisive_first(part.reach);
 
   for (int y = 0; y < maps.height; ++y)
     for (int x = 0; x < maps.width; ++x) {
@@ -105,6 +127,15 @@ RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
       part.hang_sum += part.hang.back().value;
     }
   return part;
+}
+
+std::vector<const RotatedPart*> different(const std::vector<const RotatedPart*>& rotations) {
+  std::vector<const RotatedPart*> kept;
+  for (const RotatedPart* one : rotations)
+    if (std::none_of(kept.begin(), kept.end(),
+                     [one](const RotatedPart* other) { return same_look(*one, *other); }))
+      kept.push_back(one);
+  return kept;
 }
 
 }  // namespace packmerger

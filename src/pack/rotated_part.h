@@ -37,7 +37,15 @@ struct Grid {
   bool bounds = true;
 };
 
+// The cells in the order in which a fall (fall.h) should meet them: those first that decide most,
+// the lowest of every few, the lower ones before the higher ones; the others behind them.
+std::vector<HeightCell> decisive_first(const std::vector<HeightCell>& cells);
+
 // rotation, shift and inside support are the caller's.
 RotatedPart quantised(const DepthMaps& maps, const Grid& grid);
+
+// Without those that look the same to the packer as an earlier one: a symmetry of the part makes
+// them equal, or the grid does. Wherever one of them may lie the other may, at the same cost.
+std::vector<const RotatedPart*> different(const std::vector<const RotatedPart*>& rotations);
 
 }  // namespace packmerger

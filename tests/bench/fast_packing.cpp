@@ -23,6 +23,7 @@ RotatedPart laid_out_one(const ReferenceMaps& maps, double unit_mm) {
     if (maps.reach[at] != ReferencePacker::kNothing)
       part.reach.push_back(cell(static_cast<int>(at) % grown_width - maps.growth,
                                 static_cast<int>(at) / grown_width - maps.growth, maps.reach[at]));
+  part.reach = decisive_first(part.reach);
   for (std::size_t at = 0; at < maps.top.size(); ++at) {
     if (maps.top[at] == ReferencePacker::kNothing) continue;
     const int x = static_cast<int>(at) % maps.width;

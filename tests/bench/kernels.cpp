@@ -74,12 +74,12 @@ void depth_maps_by_osmesa(benchmark::State& state, double grid_mm) {
 // ---- placement -----------------------------------------------------------------------------
 
 constexpr int kTray = 150;
-constexpr int kPart = 60;
+constexpr int kPart = 55;
 constexpr int kStride = kTray + kFallReadAhead + 1;
 constexpr int kPositions = kTray - kPart + 1;  // a row, and rows
 constexpr Height kNeverGiveUp = 32767;
 
-// A part of 60 × 60 cells over a tray of 150 × 150.
+// A part of 55 × 55 cells over a tray of 150 × 150.
 struct Scene {
   Scene() : field(static_cast<std::size_t>(kStride * (kTray + 1))) {
     Random random(3);
@@ -102,36 +102,55 @@ void plain_loops(const Scene& scene, int y, Height* heights) {
   }
 }
 
-// Calls row(y, heights) for every row of positions and counts cells times positions.
-template <typename Row>
-void all_positions(benchmark::State& state, const Row& row) {
-  std::vector<Height> heights(kPositions);
-  for (auto step : state)
-    for (int y = 0; y < kPositions; ++y) {
-      row(y, heights.data());
-      benchmark::DoNotOptimize(heights.data());
-      benchmark::ClobberMemory();
-    }
+void count_cells(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * kPart * kPart * kPositions * kPositions);
 }
 
 void fall_by_plain_loops(benchmark::State& state) {
   const Scene scene;
-  all_positions(state, [&](int y, Height* heights) { plain_loops(scene, y, heights); });
+  std::vector<Height> heights(kPositions);
+  for (auto step : state)
+    for (int y = 0; y < kPositions; ++y) {
+      plain_loops(scene, y, heights.data());
+      benchmark::DoNotOptimize(heights.data());
+      benchmark::ClobberMemory();
+    }
+  count_cells(state);
+}
+
+// Calls kernel(blocks) with all positions in blocks, row after row.
+template <typename Kernel>
+void all_blocks(benchmark::State& state, const Kernel& kernel) {
+  const Scene scene;
+  constexpr int kBlocksOfRow = kPositions / kFallPositions;
+  static_assert(kPositions == kBlocksOfRow * kFallPositions);
+  std::vector<Height> heights(static_cast<std::size_t>(kPositions * kPositions));
+  for (auto step : state) {
+    std::vector<FallBlock> blocks;
+    for (int y = 0; y < kPositions; ++y)
+      for (int block = 0; block < kBlocksOfRow; ++block) {
+        const int x = block * kFallPositions;
+        Height* to = &heights[static_cast<std::size_t>(y * kPositions + x)];
+        std::fill_n(to, kFallPositions, Height{0});
+        blocks.push_back(
+            {&scene.field[static_cast<std::size_t>(y * kStride + x)], to, kNeverGiveUp});
+      }
+    kernel(scene, blocks);
+    benchmark::ClobberMemory();
+  }
+  count_cells(state);
 }
 
 void fall_by_kernel(benchmark::State& state) {
-  const Scene scene;
-  all_positions(state, [&](int y, Height* heights) {
-    fall(scene.field.data(), kStride, scene.cells, 0, y, 0, kNeverGiveUp, heights, kPositions);
+  all_blocks(state, [](const Scene& scene, std::vector<FallBlock>& blocks) {
+    benchmark::DoNotOptimize(fall(blocks, kStride, scene.cells));
   });
 }
 
 void sums_by_kernel(benchmark::State& state) {
-  const Scene scene;
-  std::vector<std::int32_t> sums(kPositions);
-  all_positions(state, [&](int y, Height*) {
-    sum_field(scene.field.data(), kStride, scene.cells, 0, y, sums.data(), kPositions);
+  std::vector<std::int32_t> sums(static_cast<std::size_t>(kPositions * kPositions));
+  all_blocks(state, [&](const Scene& scene, std::vector<FallBlock>& blocks) {
+    sum_field(blocks, kStride, scene.cells, sums.data());
     benchmark::DoNotOptimize(sums.data());
   });
 }

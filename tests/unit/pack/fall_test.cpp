@@ -80,16 +80,20 @@ struct Scene {
   std::vector<HeightCell> cells;
 };
 
-// Results with something behind them that must stay as it is.
-template <typename T>
-std::vector<T> guarded(int n) {
-  return std::vector<T>(static_cast<std::size_t>(n) + 40, T{-77});
-}
-
-template <typename T>
-void expect_untouched_behind(const std::vector<T>& results, int n) {
-  RC_ASSERT(std::all_of(results.begin() + n, results.end(), [](T value) { return value == -77; }));
-}
+// Heights of all positions, in blocks; behind the last position of a row nothing counts.
+struct Blocks {
+  Blocks(const Scene& scene, Height limit)
+      : heights(static_cast<std::size_t>((scene.n + kFallPositions - 1) / kFallPositions *
+                                         kFallPositions),
+                32767) {
+    std::fill_n(heights.begin(), scene.n, scene.floor);
+    for (int first = 0; first < scene.n; first += kFallPositions)
+      blocks.push_back({scene.origin() + scene.y * scene.stride + scene.x + first,
+                        &heights[static_cast<std::size_t>(first)], limit});
+  }
+  std::vector<Height> heights;
+  std::vector<FallBlock> blocks;
+};
 
 RC_GTEST_PROP(Fall, IsTheHighestOfTheDifferences, (std::uint64_t seed)) {
   Random random(seed);
@@ -97,32 +101,45 @@ RC_GTEST_PROP(Fall, IsTheHighestOfTheDifferences, (std::uint64_t seed)) {
   const std::vector<Height> expected = scene.fallen();
   on_every_target([&](const char* target) {
     RC_LOG() << target;
-    std::vector<Height> heights = guarded<Height>(scene.n);
-    fall(scene.origin(), scene.stride, scene.cells, scene.x, scene.y, scene.floor, 32767,
-         heights.data(), scene.n);
-    RC_ASSERT(std::equal(expected.begin(), expected.end(), heights.begin()));
-    expect_untouched_behind(heights, scene.n);
+    Blocks all(scene, 32767);
+    RC_ASSERT(fall(all.blocks, scene.stride, scene.cells) == all.blocks.size());
+    RC_ASSERT(std::equal(expected.begin(), expected.end(), all.heights.begin()));
+    RC_ASSERT(std::all_of(all.heights.begin() + scene.n, all.heights.end(),
+                          [](Height height) { return height == 32767; }));
   });
 }
 
-RC_GTEST_PROP(Fall, GivesUpOnlyWhereAllAreTooHigh, (std::uint64_t seed)) {
+RC_GTEST_PROP(Fall, GivesUpOnlyBlocksWhoseHeightsAreAllTooHigh, (std::uint64_t seed)) {
   Random random(seed);
   const Scene scene(random);
   const std::vector<Height> expected = scene.fallen();
-  const Height limit =
-      expected[random.below(expected.size())] - static_cast<Height>(random.below(3));
+  // Above the limit there must be room for what lies behind the last position.
+  const auto limit = static_cast<Height>(
+      std::min(32766, expected[random.below(expected.size())] - static_cast<int>(random.below(3))));
   on_every_target([&](const char* target) {
     RC_LOG() << target;
-    std::vector<Height> heights = guarded<Height>(scene.n);
-    fall(scene.origin(), scene.stride, scene.cells, scene.x, scene.y, scene.floor, limit,
-         heights.data(), scene.n);
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      if (expected[i] <= limit)
-        RC_ASSERT(heights[i] == expected[i]);
-      else
-        RC_ASSERT(heights[i] > limit && heights[i] <= expected[i]);
+    Blocks all(scene, limit);
+    const std::vector<FallBlock> given = all.blocks;
+    const std::size_t kept = fall(all.blocks, scene.stride, scene.cells);
+    std::size_t next = 0;
+    for (std::size_t b = 0; b < given.size(); ++b) {
+      const std::size_t begin = b * kFallPositions;
+      const std::size_t end = std::min(expected.size(), begin + kFallPositions);
+      const bool low = std::any_of(expected.begin() + static_cast<std::ptrdiff_t>(begin),
+                                   expected.begin() + static_cast<std::ptrdiff_t>(end),
+                                   [limit](Height height) { return height <= limit; });
+      if (low) {
+        RC_ASSERT(next < kept);
+        RC_ASSERT(all.blocks[next].field == given[b].field);
+        RC_ASSERT(all.blocks[next++].heights == given[b].heights);
+      }
+      for (std::size_t i = begin; i < end; ++i)
+        if (low)
+          RC_ASSERT(all.heights[i] == expected[i]);
+        else
+          RC_ASSERT(all.heights[i] > limit && all.heights[i] <= expected[i]);
     }
-    expect_untouched_behind(heights, scene.n);
+    RC_ASSERT(next == kept);
   });
 }
 
@@ -132,11 +149,14 @@ TEST(Fall, SavesTheRestOfTheCellsOnceAllAreTooHigh) {
   std::vector<HeightCell> cells(500, HeightCell{0, 0, 0});
   cells.push_back({0, 0, -800});
   on_every_target([&](const char* target) {
-    std::vector<Height> heights(64);
-    fall(field.data(), 100, cells, 0, 0, 0, 50, heights.data(), 64);
-    EXPECT_EQ(heights, std::vector<Height>(64, 100)) << target;
-    fall(field.data(), 100, cells, 0, 0, 0, 100, heights.data(), 64);
-    EXPECT_EQ(heights, std::vector<Height>(64, 900)) << target;
+    std::vector<Height> heights(2 * kFallPositions);
+    std::vector<FallBlock> blocks{{field.data(), heights.data(), 50},
+                                  {field.data(), &heights[kFallPositions], 1000}};
+    EXPECT_EQ(fall(blocks, 100, cells), 1U) << target;
+    EXPECT_EQ(blocks[0].heights, &heights[kFallPositions]) << target;
+    std::vector<Height> expected(kFallPositions, 100);
+    expected.resize(2 * kFallPositions, 900);
+    EXPECT_EQ(heights, expected) << target;
   });
 }
 
@@ -145,24 +165,26 @@ RC_GTEST_PROP(SumField, IsTheSumOfWhatIsAboveZero, (std::uint64_t seed)) {
   const Scene scene(random);
   on_every_target([&](const char* target) {
     RC_LOG() << target;
-    std::vector<std::int32_t> sums = guarded<std::int32_t>(scene.n);
-    sum_field(scene.origin(), scene.stride, scene.cells, scene.x, scene.y, sums.data(), scene.n);
+    const Blocks all(scene, 0);
+    std::vector<std::int32_t> sums(all.heights.size() + 1, -77);
+    sum_field(all.blocks, scene.stride, scene.cells, sums.data());
     for (int i = 0; i < scene.n; ++i) {
       std::int32_t expected = 0;
       for (const HeightCell& cell : scene.cells) expected += std::max(0, scene.at(cell, i));
       RC_ASSERT(sums[static_cast<std::size_t>(i)] == expected);
     }
-    expect_untouched_behind(sums, scene.n);
+    RC_ASSERT(sums.back() == -77);
   });
 }
 
 TEST(SumField, HoldsTheMostCells) {
   const std::vector<Height> field(200, 32767);
   const std::vector<HeightCell> cells(65536);
+  const std::vector<FallBlock> blocks{{field.data(), nullptr, 0}};
   on_every_target([&](const char* target) {
-    std::vector<std::int32_t> sums(3);
-    sum_field(field.data(), 100, cells, 0, 0, sums.data(), 3);
-    EXPECT_EQ(sums, std::vector<std::int32_t>(3, 65536 * 32767)) << target;
+    std::vector<std::int32_t> sums(kFallPositions);
+    sum_field(blocks, 100, cells, sums.data());
+    EXPECT_EQ(sums, std::vector<std::int32_t>(kFallPositions, 65536 * 32767)) << target;
   });
 }
 
