@@ -94,7 +94,7 @@ std::vector<const RotatedPart*> Moves::some_rotations(const Part& part, Random& 
   std::vector<const RotatedPart*> rotations;
   for (const auto& [way, turn] : chosen)
     if (const RotatedPart* rotated = maker_.rotated(part, way, turn)) rotations.push_back(rotated);
-  return rotations;
+  return different(rotations);
 }
 
 std::vector<const RotatedPart*> Moves::good_rotations(const Part& part, std::size_t ways) {
@@ -103,7 +103,7 @@ std::vector<const RotatedPart*> Moves::good_rotations(const Part& part, std::siz
     for (std::size_t turn = 0; turn < maker_.turns(); ++turn)
       if (const RotatedPart* rotated = maker_.rotated(part, way, turn))
         rotations.push_back(rotated);
-  return rotations;
+  return different(rotations);
 }
 
 Draft Moves::start(bool largest_first, Random& random) {

@@ -29,7 +29,8 @@ class Moves {
   // Every merge that is possible here.
   std::vector<Move> merges(const Layout& layout, Random& random);
 
-  // Rotations that a part is tried in: some of its better ways up, each in a random turn.
+  // Rotations that a part is tried in, all different (rotated_part.h): some of its better ways up,
+  // each in a random turn.
   std::vector<const RotatedPart*> some_rotations(const Part& part, Random& random);
   // The best few ways up in every turn.
   std::vector<const RotatedPart*> good_rotations(const Part& part, std::size_t ways);

@@ -10,6 +10,7 @@
 #include "pack/columns.h"
 #include "pack/exact_gap.h"
 #include "pack/merge.h"
+#include "pack/moves.h"
 #include "pack/order.h"
 #include "pack/rotations.h"
 #include "unit/pack/check.h"
@@ -38,6 +39,61 @@ TEST(Rotations, AreTheDifferentProductsOfSteps) {
       for (const double angle : set.turns)
         nearest = std::min(nearest, (turn_about_z(angle) * way - wanted).norm());
     EXPECT_LT(nearest, 1e-9);
+  }
+}
+
+// A maker of the only part of a problem, and the part.
+struct OnePart {
+  OnePart(Mesh mesh, bool bounds)
+      : problem(shapes::problem_of({std::move(mesh)}, Vec3(120, 120, 120))),
+        maker(problem, {1, height_unit_mm(120), problem.gap_mm, bounds}, [] {}),
+        part(*maker.make({0})) {}
+
+  std::vector<const RotatedPart*> turned_by_steps(int steps) {
+    std::vector<const RotatedPart*> rotations;
+    for (int i = 0; i < steps; ++i)
+      rotations.push_back(maker.rotated(part, turn_about_z(radians(360.0 * i / steps)), 0));
+    return rotations;
+  }
+
+  PackProblem problem;
+  PartMaker maker;
+  const Part& part;
+};
+
+TEST(Different, ABrickLiesInSixWaysAndACubeInOne) {
+  for (const bool bounds : {true, false}) {
+    OnePart brick(shapes::box(Vec3(20, 10, 5)), bounds);
+    Moves moves(brick.problem, brick.maker);
+    EXPECT_EQ(moves.good_rotations(brick.part, 6).size(), 6U);
+    OnePart cube(shapes::box(Vec3(10, 10, 10)), bounds);
+    EXPECT_EQ(Moves(cube.problem, cube.maker).good_rotations(cube.part, 6).size(), 1U);
+  }
+}
+
+TEST(Different, APatchOfASphereLooksTheSameAfterHalfATurnAndNoOther) {
+  for (const bool bounds : {true, false}) {
+    OnePart patch(shapes::sphere_patch(30, 3, 4, 6), bounds);
+    const auto rotations = patch.turned_by_steps(12);
+    EXPECT_EQ(different({rotations[0], rotations[1], rotations[2]}).size(), 3U);
+    const auto kept = different(rotations);
+    EXPECT_EQ(kept, std::vector(rotations.begin(), rotations.begin() + 6));
+  }
+}
+
+TEST(Different, AnAngleHasNoSymmetry) {
+  OnePart angle(shapes::l_shape(20, 4, 10), true);
+  EXPECT_EQ(different(angle.turned_by_steps(12)).size(), 12U);
+}
+
+TEST(Different, SomeRotationsHaveNoTwins) {
+  OnePart brick(shapes::box(Vec3(20, 10, 5)), true);
+  Moves moves(brick.problem, brick.maker);
+  Random random(1);
+  for (int i = 0; i < 20; ++i) {
+    const auto some = moves.some_rotations(brick.part, random);
+    EXPECT_EQ(different(some).size(), some.size());
+    EXPECT_GT(some.size(), 1U);
   }
 }
 
