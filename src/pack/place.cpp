@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -124,14 +125,15 @@ class Scan {
         xs_(intersection(intersection(inside_tray(part, spec, 0), reachable(0)), rules.x)),
         ys_(intersection(intersection(inside_tray(part, spec, 1), reachable(1)), rules.y)),
         highest_(rules.on_plate_only ? 0 : spec.ceiling() - part.rise) {
-    if (part.rise > spec.ceiling() || xs_.empty() || ys_.empty()) return;
+    if (!possible()) return;
     const int y = rating_.least_growth(ys_, 1);
     least_x_ = rating_.least_growth(xs_, 0);
     bound_ =
         std::min(least_bound(xs_, y, 0, 0), least_bound(xs_, std::max(y - 1, ys_.first), 0, 0));
   }
 
-  // No position costs less; infinity where there is none.
+  bool possible() const { return !xs_.empty() && !ys_.empty() && part_.rise <= spec_.ceiling(); }
+  // No position costs less.
   double bound() const { return bound_; }
 
   void run(Hunt& hunt) {
@@ -243,7 +245,7 @@ class Scan {
   Range ys_;
   int highest_;
   int least_x_ = 0;
-  double bound_ = std::numeric_limits<double>::infinity();
+  double bound_ = 0;
   std::vector<int> limits_;  // by block of a row
 };
 
@@ -266,13 +268,13 @@ std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart
     scans.emplace_back(tray, *rotations[i], static_cast<int>(i), volume_mm3, spec, rules);
   // The most promising first: what they find rules out most of the others.
   std::vector<Scan*> order;
-  for (Scan& scan : scans) order.push_back(&scan);
+  for (Scan& scan : scans)
+    if (scan.possible()) order.push_back(&scan);
   std::stable_sort(order.begin(), order.end(),
                    [](const Scan* a, const Scan* b) { return a->bound() < b->bound(); });
   Hunt hunt;
   for (Scan* scan : order)
-    if (scan->bound() < std::numeric_limits<double>::infinity() && scan->bound() <= hunt.dearest)
-      scan->run(hunt);
+    if (scan->bound() <= hunt.dearest) scan->run(hunt);
   return hunt.best;
 }
 

@@ -28,16 +28,18 @@ void lower(std::atomic<double>& least, double value) {
 
 class TabuSearch {
  public:
-  TabuSearch(const PackProblem& problem, const Layouter& layouter, PartMaker& maker, Pace& pace)
+  TabuSearch(const PackProblem& problem, const Layouter& layouter, PartMaker& maker, Pace& pace,
+             const OnBetter& on_better)
       : problem_(problem),
         layouter_(layouter),
         moves_(problem, maker),
         pace_(pace),
+        on_better_(on_better),
         random_(problem.seed) {}
 
   std::vector<Layout> run() {
     Layout current = first_layout();
-    best_ = current;
+    improve(current);
     keep(current);
     int kicks = 0;
     while (!over()) {
@@ -94,7 +96,7 @@ class TabuSearch {
         reached = current.cost;
         rounds_without_better = 0;
       }
-      if (current.cost < best_.cost) best_ = current;
+      if (current.cost < best_.cost) improve(current);
     }
   }
 
@@ -156,8 +158,13 @@ class TabuSearch {
       if (chosen == merged.size() || merged[chosen]->cost > kWorthKeeping * best_.cost) break;
       layout = std::move(*merged[chosen]);
       keep(layout);
-      if (layout.cost < best_.cost) best_ = layout;
+      if (layout.cost < best_.cost) improve(layout);
     }
+  }
+
+  void improve(const Layout& layout) {
+    best_ = layout;
+    if (on_better_) on_better_(layout.cost);
   }
 
   void keep(const Layout& layout) {
@@ -179,6 +186,7 @@ class TabuSearch {
   const Layouter& layouter_;
   Moves moves_;
   Pace& pace_;
+  const OnBetter& on_better_;
   Random random_;
   Layout best_;
   std::map<int, Layout> cheapest_;  // by number of parts
@@ -214,8 +222,8 @@ double Pace::passed() const {
 }
 
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
-                           Pace& pace) {
-  return TabuSearch(problem, layouter, maker, pace).run();
+                           Pace& pace, const OnBetter& on_better) {
+  return TabuSearch(problem, layouter, maker, pace, on_better).run();
 }
 
 }  // namespace packmerger

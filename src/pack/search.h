@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -38,6 +39,9 @@ class Pace {
   double fraction_ = 0;
 };
 
+// Told the cost of each layout that is better than all before, on the search's own grid.
+using OnBetter = std::function<void(double cost)>;
+
 // Good layouts, cheapest first: the cheapest found for each number of parts, none more than a few
 // per cent dearer than the first. Each round draws problem.tabu_samples moves that touch no part
 // moved in the last problem.tabu_memory rounds, carries all of them out, in parallel, and goes on
@@ -45,6 +49,6 @@ class Pace {
 // search is kicked away from the best one; it ends after some kicks without a better one, or with
 // the budget. Without a budget the same seed gives the same answer on any number of threads.
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
-                           Pace& pace);
+                           Pace& pace, const OnBetter& on_better = {});
 
 }  // namespace packmerger

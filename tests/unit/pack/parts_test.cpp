@@ -1,6 +1,7 @@
 // The packer's pieces: rotations, columns, tabu search, exact gaps.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -13,6 +14,7 @@
 #include "pack/moves.h"
 #include "pack/order.h"
 #include "pack/rotations.h"
+#include "pack/search.h"
 #include "unit/pack/check.h"
 #include "unit/pack/problems.h"
 
@@ -95,6 +97,24 @@ TEST(Different, SomeRotationsHaveNoTwins) {
     EXPECT_EQ(different(some).size(), some.size());
     EXPECT_GT(some.size(), 1U);
   }
+}
+
+TEST(Search, TellsTheCostOfEachBetterLayout) {
+  PackProblem problem = shapes::problem_of(
+      {shapes::cup(9, 12, 2), shapes::l_shape(18, 4, 10), shapes::bowl(10, 2),
+       shapes::tetrahedron(16), shapes::l_shape(14, 3, 12), shapes::cup(7, 10, 1)},
+      Vec3(60, 60, 60));
+  problem.tabu_patience = 10;
+  Pace pace({}, 0);
+  const TraySpec spec{problem.build_mm, {3, height_unit_mm(60), 1, false}, &problem.cost};
+  PartMaker maker(problem, spec.grid, [] {});
+  std::vector<double> told;
+  const std::vector<Layout> found =
+      search(problem, Layouter(spec), maker, pace, [&](double cost) { told.push_back(cost); });
+  ASSERT_GT(told.size(), 1U);
+  EXPECT_TRUE(std::is_sorted(told.rbegin(), told.rend()));
+  EXPECT_EQ(std::adjacent_find(told.begin(), told.end()), told.end());
+  EXPECT_EQ(told.back(), found.front().cost);
 }
 
 TEST(Columns, CountWhatTheFormulaSays) {
