@@ -26,6 +26,9 @@ class Progress {
     if (listener_) listener_(stage, fraction);
   }
 
+  // What asks for cancellation, for a progress of another listener; nullptr: nothing does.
+  const std::atomic<bool>* cancelled() const { return cancelled_; }
+
   // The cheap test for inner loops. Throws as report() does.
   void check() const {
     if (cancelled_ != nullptr && cancelled_->load(std::memory_order_relaxed))

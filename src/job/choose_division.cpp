@@ -16,11 +16,10 @@
 namespace packmerger {
 namespace {
 
-constexpr std::size_t kMostPlans = 4;  // that are cut and packed
+constexpr std::size_t kMostPlans = 3;  // that are cut and packed
 constexpr double kAboutEqual = 0.02;   // of the least packed cost
 constexpr double kLeastPrice = 0.005;  // of V_o: what a part more must save in support at least
 constexpr double kMostPrice = 0.05;    // and at most
-constexpr double kTrialRotation = 60;  // degrees, at least: the packer adds each part's own ways up
 
 struct Candidate {
   std::shared_ptr<Divided> model;
@@ -49,13 +48,8 @@ double packed_cost(const std::shared_ptr<const Divided>& model, const Profile& p
                    std::uint64_t seed, const Progress& progress) {
   PackProblem problem = packing_problem({model}, profile, seed, 0);
   problem.edges.clear();
-  problem.grid_mm = std::max(problem.grid_mm, problem.search_grid_mm / 2);
-  problem.search_grid_mm = std::max(problem.grid_mm, problem.search_grid_mm);
-  problem.rotation_step = std::max(problem.rotation_step, radians(kTrialRotation));
-  problem.tabu_patience = 1;
-  problem.tabu_restarts = 0;
   try {
-    return pack(problem, progress).cost;
+    return trial_cost(problem, progress);
   } catch (const Error& error) {
     // It may still fit another way, and where nothing fits the packer says so better.
     if (error.fault() != Fault::kBadInput) throw;

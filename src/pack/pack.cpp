@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double kGapTolerance_mm = 1e-6;
 constexpr int kRepairs = 6;
+constexpr double kTrialRotation = std::numbers::pi / 3;  // at least: parts have their own ways up
+constexpr int kTrialPatience = 3;
 constexpr double kFinestShare = 0.25;       // of grid_mm: the grid of the last refinement
 constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
@@ -135,6 +138,10 @@ Grid grid_of(const PackProblem& problem, double cell_mm, bool bounds, double mar
   return {cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm + margin_mm, bounds};
 }
 
+Grid search_grid(const PackProblem& problem) {
+  return grid_of(problem, std::max(problem.search_grid_mm, problem.grid_mm), false);
+}
+
 // A maker and the trays of one grid.
 struct Workshop {
   Workshop(const PackProblem& problem, const Grid& grid, Pace& pace)
@@ -220,11 +227,23 @@ void make_items(const PackProblem& problem, PartMaker& maker) {
 
 }  // namespace
 
+double trial_cost(const PackProblem& problem, const Progress& progress) {
+  check_settings(problem);
+  const Progress silent([](std::string_view, double) {}, progress.cancelled());
+  Pace pace(silent, 0);
+  PackProblem trial = problem;
+  trial.rotation_step = std::max(problem.rotation_step, kTrialRotation);
+  trial.tabu_patience = std::min(problem.tabu_patience, kTrialPatience);
+  trial.tabu_restarts = 0;
+  Workshop searching(trial, search_grid(trial), pace);
+  make_items(trial, searching.maker);
+  return search(trial, searching.layouter, searching.maker, pace).front().cost;
+}
+
 Packing pack(const PackProblem& problem, const Progress& progress) {
   check_settings(problem);
   Pace pace(progress, problem.budget_s);
-  Workshop searching(
-      problem, grid_of(problem, std::max(problem.search_grid_mm, problem.grid_mm), false), pace);
+  Workshop searching(problem, search_grid(problem), pace);
   make_items(problem, searching.maker);
   std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
   layouts.push_back(side_by_side(problem, searching));

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kQuarter = std::numbers::pi / 2;
 constexpr int kColumnsAcross = 64;  // enough to rank ways up
-constexpr int kSpreadWays = 80;     // about 25 degrees apart
+constexpr int kSpreadWays = 60;     // about 29 degrees apart
 constexpr std::size_t kFlatWays = 8;
 constexpr std::size_t kMemberWays = 3;
-constexpr std::size_t kRefinedWays = 3;
+constexpr std::size_t kRefinedWays = 2;
 constexpr double kRefineFrom = 0.2;  // radians
 constexpr double kRefineTo = 0.01;
 
@@ -148,18 +148,17 @@ const Part* PartMaker::make(const ItemSet& items) {
 std::vector<WayUp> PartMaker::ways_of(const Part& part) {
   const std::vector<TriangleSoup> shapes = surfaces(part.items);
   std::vector<WayUp> ways;
-  // again: the same way up will be asked for when the part is merged; its maps are kept.
-  const auto add = [&](const Mat3& base, bool again) {
+  const auto add = [&](const Mat3& base) {
     tick_();
     const auto turn = best_turn(shapes, base, rotation_set_.turns, problem_);
-    if (turn) ways.push_back(measured(part, shapes, base, *turn, again));
+    if (turn) ways.push_back(measured(part, shapes, base, *turn));
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
   };
-  for (const Mat3& base : rotation_set_.ways_up) add(base, true);
+  for (const Mat3& base : rotation_set_.ways_up) add(base);
   if (rotation_set_.ways_up.size() > 1) add_own_ways(part, add);
   if (ways.empty()) {
     const auto found = way_up_that_fits(shapes, problem_);
-    if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}, false));
+    if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}));
   }
   std::stable_sort(ways.begin(), ways.end(),
                    [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
@@ -169,19 +168,18 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
 // Beside the rotation set: the part's own best ways up, which no fixed step hits. Directions spread
 // over the sphere, the best of them refined, and large flat facets, as cuts leave them; a merged
 // part takes its members' best.
-void PartMaker::add_own_ways(const Part& part,
-                             const std::function<double(const Mat3&, bool)>& add) {
+void PartMaker::add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add) {
   if (part.items.size() > 1) {
     for (const int item : part.items) {
       const Part* member = make({item});
       for (std::size_t i = 0; member && i < std::min(kMemberWays, member->ways.size()); ++i)
-        add(member->ways[i].base, true);
+        add(member->ways[i].base);
     }
     return;
   }
-  for (const Mat3& base : ways_on_flat_facets(surfaces(part.items), kFlatWays)) add(base, true);
+  for (const Mat3& base : ways_on_flat_facets(surfaces(part.items), kFlatWays)) add(base);
   std::vector<std::pair<double, Mat3>> tried;
-  for (const Mat3& base : spread_ways(kSpreadWays)) tried.emplace_back(add(base, false), base);
+  for (const Mat3& base : spread_ways(kSpreadWays)) tried.emplace_back(add(base), base);
   std::stable_sort(tried.begin(), tried.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   const std::size_t refined = std::min(tried.size(), kRefinedWays);
@@ -190,18 +188,23 @@ void PartMaker::add_own_ways(const Part& part,
     for (double reach = kRefineFrom; reach > kRefineTo; reach /= 2)
       for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
         const Mat3 base = Eigen::AngleAxisd(reach, axis).toRotationMatrix() * best.second;
-        const double cost = add(base, false);
+        const double cost = add(base);
         if (cost < best.first) best = {cost, base};
       }
   }
 }
 
 WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& shapes,
-                          const Mat3& base, const Turn& turn, bool keep) {
+                          const Mat3& base, const Turn& turn) {
   WayUp way{base, turn.turn, 0, 0, 0, turn.size_mm};
   if (problem_.support_angle <= 0) {
-    const DepthMaps maps = part_maps(part.items, base, keep);
-    const EnvelopeSupport support = envelope_support(maps, part.volume_mm3, grid_.cell_mm);
+    std::vector<DepthMaps> members;
+    std::vector<const DepthMaps*> all;
+    for (const TriangleSoup& shape : shapes)
+      members.push_back(draw_depth_maps(turned(shape, base), grid_.cell_mm, 0));
+    for (const DepthMaps& member : members) all.push_back(&member);
+    const EnvelopeSupport support =
+        envelope_support(united_maps(all), part.volume_mm3, grid_.cell_mm);
     way.support_mm3 = support.below_mm3 + support.inside_mm3;
     way.inside_support_mm3 = support.inside_mm3;
   } else {

@@ -62,9 +62,9 @@ class PartMaker {
   DepthMaps part_maps(const ItemSet& items, const Mat3& rotation, bool keep);
   std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation, bool keep);
   std::vector<WayUp> ways_of(const Part& part);
-  void add_own_ways(const Part& part, const std::function<double(const Mat3&, bool)>& add);
+  void add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add);
   WayUp measured(const Part& part, const std::vector<TriangleSoup>& shapes, const Mat3& base,
-                 const Turn& turn, bool keep);
+                 const Turn& turn);
   std::vector<TriangleSoup> surfaces(const ItemSet& items) const;
 
   const PackProblem& problem_;
