@@ -10,6 +10,10 @@ void add_cuts(CLI::App& program);
 
 // The packer's inner loops against plain loops, OSMesa and the least they have to do.
 void add_kernels(CLI::App& program);
+
+// The packer against the paper's: how many times faster, at the same answers.
+void add_pack(CLI::App& program);
+
 // The paper's figures and Table 1.
 void add_figures(CLI::App& program);
 

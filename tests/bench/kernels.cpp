@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "bench/bare_kernel.h"
 #include "bench/bench.h"
+#include "bench/kernels.h"
 #include "pack/depth_map.h"
 #include "pack/fall.h"
 #include "unit/pack/shapes.h"
@@ -173,18 +174,31 @@ void fall_bare(benchmark::State& state) {
 
 // ---- the verb ------------------------------------------------------------------------------
 
-// Keeps each figure beside printing it.
+// Keeps each figure, beside printing it or in place of that.
 class KeepingReporter : public benchmark::ConsoleReporter {
  public:
+  explicit KeepingReporter(bool prints) : prints_(prints) {}
+
+  bool ReportContext(const Context& context) override {
+    return !prints_ || ConsoleReporter::ReportContext(context);
+  }
   void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
+    if (prints_) ConsoleReporter::ReportRuns(runs);
     for (const Run& run : runs) {
       const auto rate = run.counters.find("items_per_second");
       if (rate != run.counters.end()) rates[run.run_name.function_name] = rate->second.value;
     }
   }
   std::map<std::string, double> rates;  // items a second
+
+ private:
+  bool prints_;
 };
+
+void register_falls() {
+  benchmark::RegisterBenchmark("fall_bare", fall_bare);
+  benchmark::RegisterBenchmark("fall", fall_by_kernel);
+}
 
 void measure_kernels() {
   using benchmark::RegisterBenchmark;
@@ -193,10 +207,9 @@ void measure_kernels() {
   RegisterBenchmark("osmesa_1mm", depth_maps_by_osmesa, 1.0)->MeasureProcessCPUTime();
   RegisterBenchmark("osmesa_2mm", depth_maps_by_osmesa, 2.0)->MeasureProcessCPUTime();
   RegisterBenchmark("fall_plain", fall_by_plain_loops);
-  RegisterBenchmark("fall_bare", fall_bare);
-  RegisterBenchmark("fall", fall_by_kernel);
+  register_falls();
   RegisterBenchmark("sum_field", sums_by_kernel);
-  KeepingReporter reporter;
+  KeepingReporter reporter(true);
   benchmark::RunSpecifiedBenchmarks(&reporter);
   auto& rates = reporter.rates;
   for (const char* grid : {"1mm", "2mm"}) {
@@ -212,6 +225,13 @@ void measure_kernels() {
 }
 
 }  // namespace
+
+FallRates measured_fall_rates() {
+  register_falls();
+  KeepingReporter reporter(false);
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return {reporter.rates["fall"] / 1e9, reporter.rates["fall_bare"] / 1e9};
+}
 
 void add_kernels(CLI::App& program) {
   program.add_subcommand("kernels", "Speed of the packer's inner loops")->callback(measure_kernels);

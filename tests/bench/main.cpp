@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   packmerger::bench::add_kernels(program);
   packmerger::bench::add_partitions(program);
   packmerger::bench::add_figures(program);
+  packmerger::bench::add_pack(program);
   packmerger::bench::add_reference(program);
   try {
     program.parse(argc, argv);

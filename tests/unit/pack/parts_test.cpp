@@ -65,7 +65,7 @@ struct OnePart {
 
 TEST(Different, ABrickLiesInSixWaysAndACubeInOne) {
   for (const bool bounds : {true, false}) {
-    OnePart brick(shapes::box(Vec3(20, 10, 5)), bounds);
+    OnePart brick(shapes::box(Vec3(20, 10, 6)), bounds);
     Moves moves(brick.problem, brick.maker);
     EXPECT_EQ(moves.good_rotations(brick.part, 6).size(), 6U);
     OnePart cube(shapes::box(Vec3(10, 10, 10)), bounds);
@@ -89,7 +89,7 @@ TEST(Different, AnAngleHasNoSymmetry) {
 }
 
 TEST(Different, SomeRotationsHaveNoTwins) {
-  OnePart brick(shapes::box(Vec3(20, 10, 5)), true);
+  OnePart brick(shapes::box(Vec3(20, 10, 6)), true);
   Moves moves(brick.problem, brick.maker);
   Random random(1);
   for (int i = 0; i < 20; ++i) {
