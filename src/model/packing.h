@@ -48,7 +48,7 @@ struct PackProblem {
   Cost cost;
   int tabu_memory = 3;     // m: rounds a move stays forbidden
   int tabu_patience = 10;  // rounds without a better layout before the search starts afresh
-  int tabu_restarts = 5;   // without a better layout before the search ends
+  int tabu_restarts = 2;   // without a better layout before the search ends
   int tabu_samples = 8;    // moves tried in one round
   double budget_s = 0;     // 0: until the search ends by itself
   std::uint64_t seed = 1;
