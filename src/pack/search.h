@@ -31,7 +31,7 @@ class Pace {
  private:
   using Clock = std::chrono::steady_clock;
 
-  const Progress& progress_;
+  Progress progress_;
   double budget_s_;
   Clock::time_point start_;
   std::mutex mutex_;

@@ -68,7 +68,7 @@ TEST_F(ProfileTest, EveryShippedProfileIsFoundAndLoads) {
     EXPECT_EQ(profile.id, id);
     EXPECT_FALSE(profile.name.empty());
     EXPECT_EQ(profile.shape.segmentation, Segmentation::kPrinter);
-    EXPECT_EQ(profile.pack.objective, Objective::kPaper);
+    EXPECT_EQ(profile.pack.objective, Objective::kPrinter);
     EXPECT_GT(profile.cost.model_price_per_g, 0);
     EXPECT_GT(profile.cost.machine_price_per_h, 0);
     EXPECT_GT(profile.cost.labour_price_per_h, 0);
