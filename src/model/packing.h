@@ -63,7 +63,10 @@ struct PlacedPart {
 
 struct Packing {
   std::vector<PlacedPart> parts;   // in the order they were placed: bottom first on each tray
-  std::vector<int> removal_order;  // indices into parts, first out first, each lifted straight up
+  std::vector<int> removal_order;  // indices into parts, first out first
+  // By part: translations, mm, in tray coordinates, that come before it is lifted straight up; empty
+  // for parts that are lifted at once.
+  std::vector<std::vector<Vec3>> removal_paths;
   std::vector<TrayMeasure> trays;
   double cost = 0;  // sum over the trays of Cost::evaluate
 };

@@ -10,14 +10,6 @@ namespace {
 // Vertical facets must not count as overhanging because of rounding.
 constexpr double kNormalTolerance = 1e-6;
 
-struct Crossing {
-  int row;
-  int column;
-  double z;
-  bool enters;         // going up, into matter
-  bool needs_support;  // of the facet crossed
-};
-
 // Twice the signed area of (a, b, p). The same bits for (b, a, p) with the other sign, so that two
 // triangles sharing an edge never both miss or both claim a line that passes through it.
 double side(const Vec2& a, const Vec2& b, const Vec2& p) {
@@ -69,8 +61,8 @@ double support_normal_limit(double support_angle) {
   return -std::sin(support_angle) - kNormalTolerance;
 }
 
-ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double step_mm,
-                             double support_angle, double plate_mm) {
+std::vector<Crossing> sorted_crossings(const std::vector<TriangleSoup>& surfaces, double step_mm,
+                                       double support_angle) {
   const double limit = support_normal_limit(support_angle);
   std::vector<Crossing> crossings;
   for (const TriangleSoup& surface : surfaces)
@@ -83,7 +75,12 @@ ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double s
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return std::tie(a.row, a.column, a.z, a.enters) < std::tie(b.row, b.column, b.z, b.enters);
   });
+  return crossings;
+}
 
+ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double step_mm,
+                             double support_angle, double plate_mm) {
+  const std::vector<Crossing> crossings = sorted_crossings(surfaces, step_mm, support_angle);
   ColumnSupport lengths;
   for (std::size_t i = 0; i < crossings.size();) {
     const int row = crossings[i].row;

@@ -21,6 +21,20 @@ struct ColumnSupport {
 ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double step_mm,
                              double support_angle, double plate_mm);
 
+// Where a vertical line through a cell's centre passes through a facet.
+struct Crossing {
+  int row = 0;
+  int column = 0;
+  double z = 0;                // mm
+  bool enters = false;         // going up, into matter
+  bool needs_support = false;  // of the facet
+};
+
+// All of them for closed surfaces, by row, column and height; of two at one height the way out of
+// matter comes first. As above, but surfaces that touch along facets may be given.
+std::vector<Crossing> sorted_crossings(const std::vector<TriangleSoup>& surfaces, double step_mm,
+                                       double support_angle);
+
 // The z component of a facet's unit normal below which it needs support.
 double support_normal_limit(double support_angle);
 

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "pack/columns.h"
 #include "pack/exact_gap.h"
+#include "pack/rearrange.h"
 #include "pack/refine.h"
 #include "pack/search.h"
 
@@ -25,7 +26,9 @@ constexpr double kFinestShare = 0.25;       // of grid_mm: the grid of the last 
 constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
-constexpr double kAboutEqual = 1.005;  // costs: the layout of fewest parts is taken
+constexpr double kSearchedShare = 0.6;  // of the budget: for layouts of dropped parts
+constexpr double kInTime = 0.97;        // of the budget: room for the last measurement
+constexpr double kAboutEqual = 1.005;   // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The last refinement's, coarser on a tray so large that it would take too much memory.
@@ -130,6 +133,7 @@ Packing packing_of(const Layout& layout, const PartMaker& maker, const PackProbl
     }
   packing.removal_order.resize(packing.parts.size());
   std::iota(packing.removal_order.rbegin(), packing.removal_order.rend(), 0);
+  packing.removal_paths.resize(packing.parts.size());
   measure(problem, packing);
   return packing;
 }
@@ -207,6 +211,16 @@ Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
 }
 
+// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
+Packing put_under(const PackProblem& problem, Packing dropped, PartMaker& maker, Pace& pace) {
+  Packing better =
+      rearranged(problem, dropped, problem.grid_mm * kFinestShare, maker, pace, kInTime);
+  for (PlacedPart& part : better.parts) keep_inside(part, problem);
+  measure(problem, better);
+  const bool kept = problem.gap_mm - least_gap_mm(better, problem) <= kGapTolerance_mm;
+  return kept && better.cost < dropped.cost ? better : dropped;
+}
+
 [[noreturn]] void refuse(const PackItem& item, std::size_t number, const PackProblem& problem) {
   const Vec3 size = bounding_box(item.surface).sizes();
   const Vec3& build = problem.build_mm;
@@ -245,7 +259,8 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   Pace pace(progress, problem.budget_s);
   Workshop searching(problem, search_grid(problem), pace);
   make_items(problem, searching.maker);
-  std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
+  Pace dropping(progress, problem.budget_s * kSearchedShare);
+  std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, dropping);
   layouts.push_back(side_by_side(problem, searching));
 
   std::vector<Packing> packings(layouts.size());
@@ -263,6 +278,7 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
       chosen = i;
   Packing best = with_gaps_kept(layouts[chosen], searching.spec.grid, std::move(packings[chosen]),
                                 problem, pace);
+  best = put_under(problem, std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;
 }

@@ -1,0 +1,205 @@
+#include "pack/solid_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <tuple>
+
+namespace packmerger {
+namespace {
+
+constexpr double kTolerance_mm = 1e-9;
+constexpr int kSamePlace_cells = 3;
+constexpr int kLookEvery = 16;  // meetings, before asking whether all heights are taken
+
+auto rank(const SolidSpot& spot) {
+  return std::tuple(spot.cost, spot.top, spot.z, spot.y, spot.x, spot.rotation);
+}
+
+// What was found in all rotations so far.
+class Found {
+ public:
+  Found(double give_up_above, std::size_t most) : give_up_above_(give_up_above), most_(most) {}
+
+  // Whether a place of at least this cost and this top may still be told.
+  bool wanted(double cost, int top) const {
+    if (cost > give_up_above_) return false;
+    const SolidSpot* worst = open_ ? &*open_ : nullptr;
+    if (covered_.size() == most_ && most_ > 0 &&
+        (worst == nullptr || rank(covered_.back()) < rank(*worst)))
+      worst = &covered_.back();
+    return worst == nullptr || std::tie(cost, top) <= std::tie(worst->cost, worst->top);
+  }
+
+  void add(const SolidSpot& spot) {
+    if (spot.cost > give_up_above_ || (open_ && !(rank(spot) < rank(*open_)))) return;
+    if (spot.open) {
+      open_ = spot;
+      std::erase_if(covered_, [&](const SolidSpot& other) { return rank(spot) < rank(other); });
+      return;
+    }
+    if (most_ == 0) return;
+    const auto near = std::find_if(covered_.begin(), covered_.end(), [&](const SolidSpot& other) {
+      return other.rotation == spot.rotation && std::abs(other.x - spot.x) < kSamePlace_cells &&
+             std::abs(other.y - spot.y) < kSamePlace_cells;
+    });
+    if (near != covered_.end()) {
+      if (rank(*near) < rank(spot)) return;
+      covered_.erase(near);
+    }
+    const auto less = [](const SolidSpot& a, const SolidSpot& b) { return rank(a) < rank(b); };
+    covered_.insert(std::upper_bound(covered_.begin(), covered_.end(), spot, less), spot);
+    if (covered_.size() > most_) covered_.pop_back();
+  }
+
+  std::vector<SolidSpot> all() const {
+    std::vector<SolidSpot> spots = covered_;
+    if (open_) spots.push_back(*open_);
+    return spots;
+  }
+
+ private:
+  double give_up_above_;
+  std::size_t most_;
+  std::optional<SolidSpot> open_;
+  std::vector<SolidSpot> covered_;  // below something, best first
+};
+
+// All positions of one rotation.
+class Scan {
+ public:
+  Scan(const SolidTray& tray, const TrayMeasure& before, const SolidPart& part, int rotation,
+       double volume_mm3, const Cost& cost, Found& found)
+      : tray_(tray), part_(part), rotation_(rotation), cost_(cost), found_(found) {
+    after_ = before;
+    after_.material_mm3 += volume_mm3;
+    after_.parts += 1;
+    // At 0 degrees a part takes the place of support at most; at others, it may prop what is above.
+    least_support_mm3_ =
+        tray.grid().support_angle <= 0 ? std::max(0.0, before.support_mm3 - 1.05 * volume_mm3) : 0;
+    support_mm3_ = before.support_mm3;
+  }
+
+  void run(const SolidRules& rules) {
+    const Range xs =
+        intersection(intersection(inside_tray(part_, tray_.grid(), 0), reachable(0)), rules.x);
+    const Range ys =
+        intersection(intersection(inside_tray(part_, tray_.grid(), 1), reachable(1)), rules.y);
+    if (xs.empty() || ys.empty()) return;
+    for (int y = ys.first; y <= ys.last; ++y)
+      for (int x = xs.first; x <= xs.last; ++x) look_at(x, y);
+  }
+
+ private:
+  // Up to the first position beside all contents: from there on it costs no less.
+  Range reachable(int axis) const {
+    if (tray_.contents().isEmpty()) return {0, 0};
+    const SolidGrid& grid = tray_.grid();
+    const double end = tray_.contents().max()[axis] / grid.cell_mm;
+    return {0, static_cast<int>(std::ceil(end)) + grid.growth()};
+  }
+
+  TrayMeasure measure(int x, int y, int z, double support_mm3) const {
+    const SolidGrid& grid = tray_.grid();
+    const Vec3 at(x * grid.cell_mm, y * grid.cell_mm, z * grid.unit_mm);
+    Vec3 low = part_.box.min() + at;
+    Vec3 high = part_.box.max() + at;
+    if (!tray_.contents().isEmpty()) {
+      low = low.cwiseMin(tray_.contents().min());
+      high = high.cwiseMax(tray_.contents().max());
+    }
+    TrayMeasure measure = after_;
+    measure.size_mm = Vec3(high.x() - low.x(), high.y() - low.y(), high.z());
+    measure.support_mm3 = support_mm3;
+    return measure;
+  }
+
+  bool worth_it(int x, int y, int z) const {
+    return found_.wanted(cost_.lower_bound(measure(x, y, z, least_support_mm3_)), z + part_.rise);
+  }
+
+  // The highest z worth looking at, less than 0 where none is: costs never fall with z.
+  int highest(int x, int y) const {
+    int low = -1;
+    int high = tray_.grid().ceiling() - part_.rise;
+    if (high >= 0 && worth_it(x, y, high)) return high;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (worth_it(x, y, middle) ? low : high) = middle;
+    }
+    return low;
+  }
+
+  void look_at(int x, int y) {
+    const int limit = highest(x, y);
+    if (limit < 0) return;
+    int shift = 0;
+    while ((limit >> shift) >= TakenHeights::kCount) ++shift;
+    const int count = (limit >> shift) + 1;
+    TakenHeights taken;
+    int calls = 0;
+    bool all = false;
+    tray_.meetings(part_.reach, x, y, [&](int low, int high) {
+      taken.take_between(low, high, shift);
+      if (++calls % kLookEvery == 0) all = taken.all(count);
+      return !all;
+    });
+    if (all) return;
+    for (int k = taken.next_free(0); k < count;) {
+      const FreeHeights free = stretch(x, y, k << shift);
+      if (worth_it(x, y, free.low)) rate(x, y, free);
+      if (free.high == kUpAndAway) return;
+      const int above = (free.high >> shift) + 1;
+      if (above >= count) return;
+      k = taken.next_free(above);
+    }
+  }
+
+  // The heights at which the part is free round one of them.
+  FreeHeights stretch(int x, int y, int z) const {
+    FreeHeights free{0, kUpAndAway};
+    tray_.meetings(part_.reach, x, y, [&](int low, int high) {
+      if (high <= z) free.low = std::max(free.low, high);
+      if (low >= z) free.high = std::min(free.high, low);
+      return true;
+    });
+    return free;
+  }
+
+  void rate(int x, int y, const FreeHeights& free) {
+    SolidSpot spot{rotation_, x, y, free.low, free.low + part_.rise, 0, free.high == kUpAndAway};
+    const double added_mm3 = tray_.added_support_mm3(part_, x, y, spot.z);
+    spot.cost = cost_.evaluate(measure(x, y, spot.z, std::max(0.0, support_mm3_ + added_mm3)));
+    found_.add(spot);
+  }
+
+  const SolidTray& tray_;
+  const SolidPart& part_;
+  int rotation_;
+  const Cost& cost_;
+  Found& found_;
+  TrayMeasure after_;
+  double least_support_mm3_ = 0;
+  double support_mm3_ = 0;
+};
+
+}  // namespace
+
+Range inside_tray(const SolidPart& part, const SolidGrid& grid, int axis) {
+  const double before = -part.box.min()[axis] - kTolerance_mm;
+  const double room = grid.build_mm[axis] - part.box.max()[axis] + kTolerance_mm;
+  return {static_cast<int>(std::ceil(before / grid.cell_mm)),
+          static_cast<int>(std::floor(room / grid.cell_mm))};
+}
+
+std::vector<SolidSpot> solid_spots(const SolidTray& tray, const TrayMeasure& before,
+                                   std::span<const SolidPart* const> rotations, double volume_mm3,
+                                   const Cost& cost, const SolidRules& rules) {
+  Found found(rules.give_up_above, rules.most);
+  for (std::size_t i = 0; i < rotations.size(); ++i)
+    Scan(tray, before, *rotations[i], static_cast<int>(i), volume_mm3, cost, found).run(rules);
+  return found.all();
+}
+
+}  // namespace packmerger
