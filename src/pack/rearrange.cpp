@@ -18,13 +18,13 @@ namespace {
 constexpr std::size_t kRotationsTried = 24;
 constexpr std::size_t kBetterWays = 8;  // by what the part costs alone: tried half of the time
 constexpr std::size_t kMostTakenOut = 3;
+constexpr double kSampling = 0.005;       // of a cost: what two grids may differ in support
 constexpr std::size_t kCoveredTried = 4;  // places below something, for each part put back
 
 struct Arranged {
   std::vector<Standing> parts;
-  double cost = 0;         // on the fine grid
-  double coarse_cost = 0;  // as the search on the coarse grid sees it
-  double unrest = 0;       // of equal costs the lesser is better: how far up matter lies
+  double cost = 0;
+  double unrest = 0;  // of equal costs the lesser is better: how far up matter lies
 };
 
 // One tray.
@@ -59,6 +59,14 @@ class Rearranger {
       for (const auto& one : found)
         if (one && (best == nullptr || better(*one, *best))) best = &*one;
       ++rounds_without_better;
+      if (getenv("DBG")) {
+        static int n = 0;
+        int ok = 0;
+        for (auto& o : found) ok += o.has_value();
+        fprintf(stderr, "%d t=%.3f ok=%d cost=%.3f unrest=%.0f best=%.3f %.0f\n", n++,
+                pace_.passed(), ok, current.cost, current.unrest, best ? best->cost : -1,
+                best ? best->unrest : -1);
+      }
       if (best == nullptr || !better(*best, current)) continue;
       if (best->cost < current.cost) rounds_without_better = 0;
       current = *best;
@@ -87,15 +95,16 @@ class Rearranger {
 
   std::vector<SolidPlace> coarse_places(const std::vector<Standing>& parts, Drawings& drawings) {
     std::vector<SolidPlace> places;
-    const int ratio = solids_.ratio();
     for (const Standing& one : parts) {
-      const int x = one.x / ratio;
-      const int y = one.y / ratio;
-      drawings.push_back(
-          solids_.coarse(one.part, one.attitude, one.x - x * ratio, one.y - y * ratio));
-      places.push_back({drawings.back().get(), x, y, one.z});
+      drawings.push_back(coarse_of(one));
+      places.push_back(
+          {drawings.back().get(), one.x / solids_.ratio(), one.y / solids_.ratio(), one.z});
     }
     return places;
+  }
+
+  std::shared_ptr<const SolidPart> coarse_of(const Standing& one) {
+    return solids_.coarse(one.part, one.attitude, one.x % solids_.ratio(), one.y % solids_.ratio());
   }
 
   TrayMeasure measure(const SolidTray& tray, const std::vector<Standing>& parts) const {
@@ -112,12 +121,10 @@ class Rearranger {
   Arranged rated(std::vector<Standing> parts) {
     Arranged arranged;
     Drawings drawings;
-    const SolidTray fine(fine_, fine_places(parts, drawings));
-    const SolidTray coarse(coarse_, coarse_places(parts, drawings));
-    arranged.cost = problem_.cost.evaluate(measure(fine, parts));
-    arranged.coarse_cost = problem_.cost.evaluate(measure(coarse, parts));
+    const SolidTray tray(coarse_, coarse_places(parts, drawings));
+    arranged.cost = problem_.cost.evaluate(measure(tray, parts));
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double top = (parts[i].z + drawings[i]->rise) * fine_.unit_mm;
+      const double top = (parts[i].z + drawings[i]->rise) * coarse_.unit_mm;
       arranged.unrest += volume(parts[i].part) * top * top;
     }
     arranged.parts = std::move(parts);
@@ -159,7 +166,7 @@ class Rearranger {
     std::size_t found = 0;
     int top = -1;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const int here = parts[i].z + solids_.fine(parts[i].part, parts[i].attitude)->rise;
+      const int here = parts[i].z + coarse_of(parts[i])->rise;
       if (here > top) {
         top = here;
         found = i;
@@ -194,25 +201,23 @@ class Rearranger {
       rotations.push_back(drawings.back().get());
     }
     SolidRules rules;
-    rules.give_up_above = from.coarse_cost;
+    rules.give_up_above = from.cost;
     rules.most = kCoveredTried;
-    const std::vector<SolidSpot> spots = solid_spots(coarse, measure(coarse, rest), rotations,
-                                                     volume(part.part), problem_.cost, rules);
+    const TrayMeasure before = measure(coarse, rest);
+    const std::vector<SolidSpot> spots =
+        solid_spots(coarse, before, rotations, volume(part.part), problem_.cost, rules);
     if (spots.empty()) return std::nullopt;
-    std::vector<SolidPlace> places = fine_places(rest, drawings);
-    const SolidTray fine(fine_, places);
-    const TrayMeasure before = measure(fine, rest);
+    const std::vector<SolidPlace> places = fine_places(rest, drawings);
     for (const SolidSpot& spot : spots) {
       const auto& attitude = tried[static_cast<std::size_t>(spot.rotation)];
-      const auto put = settled(from, fine, before, part.part, attitude, spot, places);
+      const auto put = settled(from, before, part.part, attitude, spot, places);
       if (put) return put;
     }
     return std::nullopt;
   }
 
   // The best place on the fine grid near one that was found on the coarse grid.
-  std::optional<Standing> settled(const Arranged& from, const SolidTray& fine,
-                                  const TrayMeasure& before, int part,
+  std::optional<Standing> settled(const Arranged& from, const TrayMeasure& before, int part,
                                   const std::shared_ptr<const Attitude>& attitude,
                                   const SolidSpot& spot, const std::vector<SolidPlace>& rest) {
     const int ratio = solids_.ratio();
@@ -220,7 +225,14 @@ class Rearranger {
     SolidRules rules;
     rules.x = {(spot.x - 1) * ratio, (spot.x + 1) * ratio};
     rules.y = {(spot.y - 1) * ratio, (spot.y + 1) * ratio};
-    rules.give_up_above = from.cost;
+    rules.give_up_above = from.cost + kSampling * std::abs(from.cost);
+    const auto window = [&](const Range& positions, int axis) {
+      const int stands_out = fine_.growth() + 1;
+      return Range{
+          positions.first - stands_out,
+          positions.last + stands_out + static_cast<int>(drawing->box.max()[axis] / fine_.cell_mm)};
+    };
+    const SolidTray fine(fine_, rest, {window(rules.x, 0), window(rules.y, 1)});
     const std::array<const SolidPart*, 1> one{drawing.get()};
     for (const SolidSpot& found :
          solid_spots(fine, before, one, volume(part), problem_.cost, rules)) {

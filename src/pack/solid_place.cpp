@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTolerance_mm = 1e-9;
 constexpr int kSamePlace_cells = 3;
-constexpr int kLookEvery = 16;  // meetings, before asking whether all heights are taken
+constexpr int kLookEvery = 8;  // meetings, before asking whether all heights are taken
 
 auto rank(const SolidSpot& spot) {
   return std::tuple(spot.cost, spot.top, spot.z, spot.y, spot.x, spot.rotation);
@@ -32,25 +32,27 @@ class Found {
     return worst == nullptr || std::tie(cost, top) <= std::tie(worst->cost, worst->top);
   }
 
-  void add(const SolidSpot& spot) {
-    if (spot.cost > give_up_above_ || (open_ && !(rank(spot) < rank(*open_)))) return;
+  // Whether it was taken.
+  bool add(const SolidSpot& spot) {
+    if (spot.cost > give_up_above_ || (open_ && !(rank(spot) < rank(*open_)))) return false;
     if (spot.open) {
       open_ = spot;
       std::erase_if(covered_, [&](const SolidSpot& other) { return rank(spot) < rank(other); });
-      return;
+      return true;
     }
-    if (most_ == 0) return;
+    if (most_ == 0) return false;
     const auto near = std::find_if(covered_.begin(), covered_.end(), [&](const SolidSpot& other) {
       return other.rotation == spot.rotation && std::abs(other.x - spot.x) < kSamePlace_cells &&
              std::abs(other.y - spot.y) < kSamePlace_cells;
     });
     if (near != covered_.end()) {
-      if (rank(*near) < rank(spot)) return;
+      if (rank(*near) < rank(spot)) return false;
       covered_.erase(near);
     }
     const auto less = [](const SolidSpot& a, const SolidSpot& b) { return rank(a) < rank(b); };
     covered_.insert(std::upper_bound(covered_.begin(), covered_.end(), spot, less), spot);
     if (covered_.size() > most_) covered_.pop_back();
+    return true;
   }
 
   std::vector<SolidSpot> all() const {
@@ -87,8 +89,11 @@ class Scan {
     const Range ys =
         intersection(intersection(inside_tray(part_, tray_.grid(), 1), reachable(1)), rules.y);
     if (xs.empty() || ys.empty()) return;
+    least_x_ = least_growth(xs, 0);
+    least_y_ = least_growth(ys, 1);
+    limit();
     for (int y = ys.first; y <= ys.last; ++y)
-      for (int x = xs.first; x <= xs.last; ++x) look_at(x, y);
+      for (int x = xs.first; x <= xs.last && highest_ >= 0; ++x) look_at(x, y);
   }
 
  private:
@@ -119,24 +124,30 @@ class Scan {
     return found_.wanted(cost_.lower_bound(measure(x, y, z, least_support_mm3_)), z + part_.rise);
   }
 
-  // The highest z worth looking at, less than 0 where none is: costs never fall with z.
-  int highest(int x, int y) const {
+  // The position in a range at which the contents grow least along an axis.
+  int least_growth(const Range& range, int axis) const {
+    if (tray_.contents().isEmpty()) return range.first;
+    const double at = (tray_.contents().min()[axis] - part_.box.min()[axis]) / tray_.grid().cell_mm;
+    return std::clamp(static_cast<int>(std::ceil(std::clamp(at, -1e6, 1e6))), range.first,
+                      range.last);
+  }
+
+  // The highest z worth looking at anywhere, below 0 where none is: costs never fall with z.
+  void limit() {
     int low = -1;
-    int high = tray_.grid().ceiling() - part_.rise;
-    if (high >= 0 && worth_it(x, y, high)) return high;
+    int high = tray_.grid().ceiling() - part_.rise + 1;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
-      (worth_it(x, y, middle) ? low : high) = middle;
+      (worth_it(least_x_, least_y_, middle) ? low : high) = middle;
     }
-    return low;
+    highest_ = low;
+    shift_ = 0;
+    while ((highest_ >> shift_) >= TakenHeights::kCount) ++shift_;
   }
 
   void look_at(int x, int y) {
-    const int limit = highest(x, y);
-    if (limit < 0) return;
-    int shift = 0;
-    while ((limit >> shift) >= TakenHeights::kCount) ++shift;
-    const int count = (limit >> shift) + 1;
+    const int shift = shift_;
+    const int count = (highest_ >> shift) + 1;
     TakenHeights taken;
     int calls = 0;
     bool all = false;
@@ -171,7 +182,7 @@ class Scan {
     SolidSpot spot{rotation_, x, y, free.low, free.low + part_.rise, 0, free.high == kUpAndAway};
     const double added_mm3 = tray_.added_support_mm3(part_, x, y, spot.z);
     spot.cost = cost_.evaluate(measure(x, y, spot.z, std::max(0.0, support_mm3_ + added_mm3)));
-    found_.add(spot);
+    if (found_.add(spot)) limit();
   }
 
   const SolidTray& tray_;
@@ -182,6 +193,10 @@ class Scan {
   TrayMeasure after_;
   double least_support_mm3_ = 0;
   double support_mm3_ = 0;
+  int least_x_ = 0;
+  int least_y_ = 0;
+  int highest_ = -1;
+  int shift_ = 0;
 };
 
 }  // namespace

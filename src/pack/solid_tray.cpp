@@ -57,11 +57,13 @@ int TakenHeights::next_free(int from) const {
   return kCount;
 }
 
-SolidTray::SolidTray(const SolidGrid& grid, const std::vector<SolidPlace>& places)
-    : grid_(grid),
-      border_(grid.growth() + 1),
-      stride_(grid.columns() + 2 * border_),
-      height_(grid.rows() + 2 * border_) {
+SolidTray::SolidTray(const SolidGrid& grid, const std::vector<SolidPlace>& places,
+                     const CellWindow& window)
+    : grid_(grid) {
+  const int border = grid.growth() + 1;
+  cells_.x = intersection(window.x, {-border, grid.columns() + border - 1});
+  cells_.y = intersection(window.y, {-border, grid.rows() + border - 1});
+  stride_ = cells_.x.count();
   matter_ = columns_of(places, &SolidPart::matter);
   centres_ = columns_of(places, &SolidPart::centres);
   for (const SolidPlace& place : places) {
@@ -81,18 +83,24 @@ SolidTray::SolidTray(const SolidGrid& grid, const std::vector<SolidPlace>& place
 SolidTray::Columns SolidTray::columns_of(const std::vector<SolidPlace>& places,
                                          std::vector<SpanCell> SolidPart::*spans) const {
   Columns columns;
-  columns.first.assign(static_cast<std::size_t>(stride_ * height_) + 1, 0);
-  for (const SolidPlace& place : places)
-    for (const SpanCell& cell : place.part->*spans)
-      ++columns.first[index(place.x + cell.x, place.y + cell.y) + 1];
+  columns.first.assign(static_cast<std::size_t>(stride_ * cells_.y.count()) + 1, 0);
+  const auto for_each_span = [&](const auto& body) {
+    for (const SolidPlace& place : places)
+      for (const SpanCell& cell : place.part->*spans) {
+        const int x = place.x + cell.x;
+        const int y = place.y + cell.y;
+        if (x >= cells_.x.first && x <= cells_.x.last && y >= cells_.y.first && y <= cells_.y.last)
+          body(index(x, y), Span{static_cast<Height>(cell.low + place.z),
+                                 static_cast<Height>(cell.high + place.z), cell.hangs});
+      }
+  };
+  for_each_span([&](std::size_t cell, const Span&) { ++columns.first[cell + 1]; });
   for (std::size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];
   columns.spans.resize(static_cast<std::size_t>(columns.first.back()));
   std::vector<std::int32_t> next(columns.first.begin(), columns.first.end() - 1);
-  for (const SolidPlace& place : places)
-    for (const SpanCell& cell : place.part->*spans)
-      columns.spans[static_cast<std::size_t>(next[index(place.x + cell.x, place.y + cell.y)]++)] = {
-          static_cast<Height>(cell.low + place.z), static_cast<Height>(cell.high + place.z),
-          cell.hangs};
+  for_each_span([&](std::size_t cell, const Span& span) {
+    columns.spans[static_cast<std::size_t>(next[cell]++)] = span;
+  });
   for (std::size_t i = 0; i + 1 < columns.first.size(); ++i)
     if (columns.first[i + 1] - columns.first[i] > 1)
       std::sort(columns.spans.begin() + columns.first[i],

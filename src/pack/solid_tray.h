@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "pack/place.h"
 #include "pack/solid_part.h"
 
 namespace packmerger {
@@ -18,6 +19,12 @@ struct SolidPlace {
   int x = 0;  // cells
   int y = 0;
   int z = 0;  // units
+};
+
+// Cells of a tray that are looked at.
+struct CellWindow {
+  Range x = kAnywhere;
+  Range y = kAnywhere;
 };
 
 // Heights of a part's origin at which it meets nothing, units; both ends are free too.
@@ -73,8 +80,10 @@ class SolidTray {
     bool hangs;
   };
 
-  // grid must outlive it.
-  SolidTray(const SolidGrid& grid, const std::vector<SolidPlace>& places);
+  // grid must outlive it. Matter outside of the window is left out, and no part may be asked about
+  // there; contents() and top() are those of the whole tray all the same.
+  SolidTray(const SolidGrid& grid, const std::vector<SolidPlace>& places,
+            const CellWindow& window = {});
 
   // Where a part of these spans meets matter at (x, y), as heights of its origin: `between(low,
   // high)` is called for each meeting with the heights strictly between which it happens, until it
@@ -97,9 +106,9 @@ class SolidTray {
   // V_s that a part adds at a place, mm³; negative where it fills what would need support.
   double added_support_mm3(const SolidPart& part, int x, int y, int z) const;
 
-  const Box3& contents() const { return contents_; }  // mm; empty where there is nothing
-  double support_mm3() const { return support_mm3_; }
-  int top() const { return top_; }  // of all spans, units
+  const Box3& contents() const { return contents_; }   // mm; empty where there is nothing
+  double support_mm3() const { return support_mm3_; }  // in the window
+  int top() const { return top_; }                     // of all spans, units
   const SolidGrid& grid() const { return grid_; }
 
  private:
@@ -109,15 +118,14 @@ class SolidTray {
   };
 
   std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>((y + border_) * stride_ + x + border_);
+    return static_cast<std::size_t>((y - cells_.y.first) * stride_ + x - cells_.x.first);
   }
   Columns columns_of(const std::vector<SolidPlace>& places,
                      std::vector<SpanCell> SolidPart::*spans) const;
 
   const SolidGrid& grid_;
-  int border_;
+  CellWindow cells_;  // with a border for what stands out of the tray
   int stride_;
-  int height_;
   Columns matter_;
   Columns centres_;
   Box3 contents_;

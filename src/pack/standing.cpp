@@ -6,7 +6,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kTolerance = 1e-7;  // of a cell, and of a unit
-constexpr std::size_t kMostDrawings = 6000;
+constexpr std::size_t kMostSpans = 12'000'000;
 
 std::array<std::int64_t, 9> key_of(const Mat3& rotation) {
   std::array<std::int64_t, 9> key{};
@@ -98,11 +98,13 @@ std::shared_ptr<const SolidPart> SolidMaker::drawn(int part,
     for (Vec3& point : surface.points) point = attitude->rotation * point + attitude->shift + moved;
   auto made = std::make_shared<const SolidPart>(solid_part(turned, grid));
   const std::lock_guard lock(mutex_);
+  spans_ += made->matter.size() + made->reach.size() + made->centres.size();
   return drawings_.emplace(key, Drawing{attitude, std::move(made)}).first->second.part;
 }
 
 void SolidMaker::forget_some() {
-  if (drawings_.size() < kMostDrawings) return;
+  if (spans_ < kMostSpans) return;
+  spans_ = 0;
   drawings_.clear();
   attitudes_.clear();
 }

@@ -70,6 +70,7 @@ class SolidMaker {
     std::shared_ptr<const SolidPart> part;
   };
   std::map<Key, Drawing> drawings_;
+  std::size_t spans_ = 0;  // in the drawings
 };
 
 }  // namespace packmerger

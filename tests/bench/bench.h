@@ -17,6 +17,9 @@ void add_pack(CLI::App& program);
 // The paper's figures and Table 1.
 void add_figures(CLI::App& program);
 
+// Mixed small parts on a square base at the least height, against the paper's packer.
+void add_mixed(CLI::App& program);
+
 // The paper's packer, simple and slow, on a model's segments.
 void add_reference(CLI::App& program);
 

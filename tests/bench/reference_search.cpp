@@ -7,13 +7,16 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "bench/reference_problem.h"
+#include "bench/stopwatch.h"
 
 namespace packmerger::bench {
 OrderSearch search_order(const std::vector<std::vector<ReferenceMaps>>& maps,
                          const std::vector<double>& volumes_mm3, const PackProblem& problem,
-                         ReferencePacker& packer, Random& random) {
+                         ReferencePacker& packer, Random& random, double limit_s) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const ThreadLimit one_thread(1);
+  const Stopwatch watch;
+  const auto over = [&] { return limit_s > 0 && watch.seconds() >= limit_s; };
   Order start(maps.size());
   std::iota(start.begin(), start.end(), 0);
   random.shuffle(start);
@@ -26,7 +29,7 @@ OrderSearch search_order(const std::vector<std::vector<ReferenceMaps>>& maps,
   search.cost = cost_of(start);
   OrderCost cost;
   cost.evaluate = [&](const Order& order, std::size_t, double) {
-    const double found = cost_of(order);
+    const double found = over() ? kInfinity : cost_of(order);
     least_of_round = std::min(least_of_round, found);
     return found;
   };
@@ -35,7 +38,7 @@ OrderSearch search_order(const std::vector<std::vector<ReferenceMaps>>& maps,
     search.rounds.push_back({least_of_round, search.cost});
     least_of_round = kInfinity;
   };
-  cost.go_on = [](int) { return true; };
+  cost.go_on = [&](int) { return !over(); };
   const TabuSettings settings{problem.tabu_memory, problem.tabu_patience, problem.tabu_samples,
                               random.bits()};
   search.cost = tabu_search(start, search.cost, settings, cost).cost;

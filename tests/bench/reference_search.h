@@ -30,10 +30,11 @@ struct ReferenceAnswer {
 };
 
 // Section 6.2 alone: the best order of these parts, from a random one on. tabu_memory,
-// tabu_patience and tabu_samples are the problem's. On one thread.
+// tabu_patience and tabu_samples are the problem's. On one thread. Ends early after limit_s seconds
+// where that is above 0, with the best order until then.
 OrderSearch search_order(const std::vector<std::vector<ReferenceMaps>>& maps,
                          const std::vector<double>& volumes_mm3, const PackProblem& problem,
-                         ReferencePacker& packer, Random& random);
+                         ReferencePacker& packer, Random& random, double limit_s = 0);
 
 // tabu_memory, tabu_patience, tabu_samples and seed are the problem's. On one thread, every packing
 // from its first part on.
