@@ -1,6 +1,7 @@
 // One way of printing the job: which parts stand where on which trays.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "model/job.h"
@@ -11,8 +12,9 @@
 namespace packmerger {
 
 struct Arrangement {
-  std::vector<JobPart> parts;      // ids 1, 2, … in order
-  std::vector<int> removal_order;  // ids
+  std::vector<JobPart> parts;                      // ids 1, 2, … in order
+  std::vector<int> removal_order;                  // ids
+  std::map<int, std::vector<Vec3>> removal_paths;  // by id, only parts not lifted straight up
   int trays = 1;
 };
 

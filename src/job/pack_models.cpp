@@ -79,6 +79,9 @@ Arrangement arrange(const Models& models, const PackProblem& problem, const Pack
   }
   for (const int index : packing.removal_order)
     arrangement.removal_order.push_back(arrangement.parts[index].id);
+  for (std::size_t i = 0; i < packing.removal_paths.size(); ++i)
+    if (!packing.removal_paths[i].empty())
+      arrangement.removal_paths[arrangement.parts[i].id] = packing.removal_paths[i];
   return arrangement;
 }
 

@@ -57,6 +57,7 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
   job.final_segments = static_cast<int>(arrangement.parts.size());
   job.parts = std::move(arrangement.parts);
   job.removal_order = std::move(arrangement.removal_order);
+  job.removal_paths = std::move(arrangement.removal_paths);
 }
 
 std::vector<TrayFiles> programs(Job& job, const std::vector<Tray>& trays,

@@ -26,7 +26,7 @@ constexpr double kFinestShare = 0.25;       // of grid_mm: the grid of the last 
 constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
-constexpr double kSearchedShare = 0.6;  // of the budget: for layouts of dropped parts
+constexpr double kDroppingShare = 0.6;  // of the budget: for layouts of dropped parts
 constexpr double kInTime = 0.97;        // of the budget: room for the last measurement
 constexpr double kAboutEqual = 1.005;   // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -213,12 +213,13 @@ Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
 
 // With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
 Packing put_under(const PackProblem& problem, Packing dropped, PartMaker& maker, Pace& pace) {
-  Packing better =
-      rearranged(problem, dropped, problem.grid_mm * kFinestShare, maker, pace, kInTime);
-  for (PlacedPart& part : better.parts) keep_inside(part, problem);
-  measure(problem, better);
-  const bool kept = problem.gap_mm - least_gap_mm(better, problem) <= kGapTolerance_mm;
-  return kept && better.cost < dropped.cost ? better : dropped;
+  std::optional<Packing> better =
+      rearranged(problem, dropped, problem.grid_mm * kFinestShare, maker, pace);
+  if (!better) return dropped;
+  for (PlacedPart& part : better->parts) keep_inside(part, problem);
+  measure(problem, *better);
+  const bool kept = problem.gap_mm - least_gap_mm(*better, problem) <= kGapTolerance_mm;
+  return kept && better->cost < dropped.cost ? *better : dropped;
 }
 
 [[noreturn]] void refuse(const PackItem& item, std::size_t number, const PackProblem& problem) {
@@ -259,8 +260,9 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   Pace pace(progress, problem.budget_s);
   Workshop searching(problem, search_grid(problem), pace);
   make_items(problem, searching.maker);
-  Pace dropping(progress, problem.budget_s * kSearchedShare);
-  std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, dropping);
+  pace.set_share(kDroppingShare);
+  std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
+  pace.set_share(kInTime);
   layouts.push_back(side_by_side(problem, searching));
 
   std::vector<Packing> packings(layouts.size());

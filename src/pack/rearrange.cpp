@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <tuple>
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "pack/put_back.h"
 #include "pack/removal_plan.h"
-#include "pack/solid_place.h"
 #include "pack/standing.h"
 
 namespace packmerger {
@@ -18,134 +17,93 @@ namespace {
 constexpr std::size_t kRotationsTried = 24;
 constexpr std::size_t kBetterWays = 8;  // by what the part costs alone: tried half of the time
 constexpr std::size_t kMostTakenOut = 3;
-constexpr double kSampling = 0.005;       // of a cost: what two grids may differ in support
-constexpr std::size_t kCoveredTried = 4;  // places below something, for each part put back
+constexpr std::size_t kShakeOneIn = 8;  // tries
 
-struct Arranged {
-  std::vector<Standing> parts;
-  double cost = 0;
-  double unrest = 0;  // of equal costs the lesser is better: how far up matter lies
-};
+bool better(const Arranged& a, const Arranged& b) {
+  return std::tie(a.cost, a.unrest) < std::tie(b.cost, b.unrest);
+}
+
+bool same_place(const Standing& a, const Standing& b) {
+  return a.attitude == b.attitude && a.x == b.x && a.y == b.y && a.z == b.z;
+}
 
 // One tray.
 class Rearranger {
  public:
   Rearranger(const PackProblem& problem, const std::vector<const Part*>& parts, SolidMaker& solids,
-             const SolidGrid& coarse, const SolidGrid& fine, Pace& pace)
+             PutBack& put_back, Pace& pace)
       : problem_(problem),
         parts_(parts),
         solids_(solids),
-        coarse_(coarse),
-        fine_(fine),
+        put_back_(put_back),
         rotations_(rotation_set(problem.rotation_step)),
         pace_(pace) {}
 
-  Arranged run(std::vector<Standing> standing, std::uint64_t seed, double until) {
+  std::vector<Standing> run(std::vector<Standing> standing, std::uint64_t seed) {
     Random random(seed);
-    Arranged current = rated(std::move(standing));
+    Arranged current = put_back_.rated(std::move(standing));
     int rounds_without_better = 0;
-    while (rounds_without_better < patience() && pace_.passed() < until) {
+    while (pace_.passed() < 1 &&
+           (problem_.budget_s > 0 || rounds_without_better < problem_.tabu_patience)) {
       pace_.tick();
       solids_.forget_some();
-      const auto tries = static_cast<std::size_t>(std::max(1, problem_.tabu_samples));
-      std::vector<std::uint64_t> seeds(tries);
-      for (std::uint64_t& one : seeds) one = random.bits();
-      std::vector<std::optional<Arranged>> found(tries);
-      parallel_for(tries, [&](std::size_t i) { found[i] = attempt(current, Random(seeds[i])); });
-      const auto better = [](const Arranged& a, const Arranged& b) {
-        return std::tie(a.cost, a.unrest) < std::tie(b.cost, b.unrest);
-      };
-      const Arranged* best = nullptr;
-      for (const auto& one : found)
-        if (one && (best == nullptr || better(*one, *best))) best = &*one;
+      std::vector<std::optional<Arranged>> found = round(current, random);
+      std::optional<Arranged>* best = nullptr;
+      for (auto& one : found)
+        if (one && (best == nullptr || better(*one, **best))) best = &one;
       ++rounds_without_better;
-      if (getenv("DBG")) {
-        static int n = 0;
-        int ok = 0;
-        for (auto& o : found) ok += o.has_value();
-        fprintf(stderr, "%d t=%.3f ok=%d cost=%.3f unrest=%.0f best=%.3f %.0f\n", n++,
-                pace_.passed(), ok, current.cost, current.unrest, best ? best->cost : -1,
-                best ? best->unrest : -1);
-      }
-      if (best == nullptr || !better(*best, current)) continue;
-      if (best->cost < current.cost) rounds_without_better = 0;
-      current = *best;
+      if (best == nullptr || !better(**best, current)) continue;
+      if ((*best)->cost < current.cost) rounds_without_better = 0;
+      current = std::move(**best);
     }
-    return current;
+    return current.parts;
   }
 
  private:
-  int patience() const {
-    return problem_.budget_s > 0 ? std::numeric_limits<int>::max() : problem_.tabu_patience;
-  }
-
-  double volume(int part) const { return parts_[static_cast<std::size_t>(part)]->volume_mm3; }
-
-  // Drawings are kept alive by the caller's list.
-  using Drawings = std::vector<std::shared_ptr<const SolidPart>>;
-
-  std::vector<SolidPlace> fine_places(const std::vector<Standing>& parts, Drawings& drawings) {
-    std::vector<SolidPlace> places;
-    for (const Standing& one : parts) {
-      drawings.push_back(solids_.fine(one.part, one.attitude));
-      places.push_back({drawings.back().get(), one.x, one.y, one.z});
-    }
-    return places;
-  }
-
-  std::vector<SolidPlace> coarse_places(const std::vector<Standing>& parts, Drawings& drawings) {
-    std::vector<SolidPlace> places;
-    for (const Standing& one : parts) {
-      drawings.push_back(coarse_of(one));
-      places.push_back(
-          {drawings.back().get(), one.x / solids_.ratio(), one.y / solids_.ratio(), one.z});
-    }
-    return places;
-  }
-
-  std::shared_ptr<const SolidPart> coarse_of(const Standing& one) {
-    return solids_.coarse(one.part, one.attitude, one.x % solids_.ratio(), one.y % solids_.ratio());
-  }
-
-  TrayMeasure measure(const SolidTray& tray, const std::vector<Standing>& parts) const {
-    TrayMeasure measure;
-    if (parts.empty()) return measure;
-    const Vec3 size = tray.contents().sizes();
-    measure.size_mm = Vec3(size.x(), size.y(), tray.contents().max().z());
-    measure.support_mm3 = tray.support_mm3();
-    for (const Standing& one : parts) measure.material_mm3 += volume(one.part);
-    measure.parts = static_cast<int>(parts.size());
-    return measure;
-  }
-
-  Arranged rated(std::vector<Standing> parts) {
-    Arranged arranged;
-    Drawings drawings;
-    const SolidTray tray(coarse_, coarse_places(parts, drawings));
-    arranged.cost = problem_.cost.evaluate(measure(tray, parts));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double top = (parts[i].z + drawings[i]->rise) * coarse_.unit_mm;
-      arranged.unrest += volume(parts[i].part) * top * top;
-    }
-    arranged.parts = std::move(parts);
-    return arranged;
+  std::vector<std::optional<Arranged>> round(const Arranged& current, Random& random) {
+    const auto tries = static_cast<std::size_t>(std::max(1, problem_.tabu_samples));
+    std::vector<std::uint64_t> seeds(tries);
+    for (std::uint64_t& one : seeds) one = random.bits();
+    std::vector<std::optional<Arranged>> found(tries);
+    parallel_for(tries, [&](std::size_t i) {
+      Random own(seeds[i]);
+      found[i] = own.below(kShakeOneIn) == 0 ? shaken(current) : moved(current, own);
+    });
+    return found;
   }
 
   // Takes some parts out and puts them back one after the other.
-  std::optional<Arranged> attempt(const Arranged& from, Random random) {
+  std::optional<Arranged> moved(const Arranged& from, Random& random) {
     std::vector<Standing> rest = from.parts;
     const std::vector<Standing> taken = taken_out(rest, random);
     bool same = true;
     for (const Standing& part : taken) {
       pace_.tick();
-      const std::optional<Standing> put = put_back(from, rest, part, random);
+      const auto put = put_back_.anywhere(rest, part.part, attitudes(part, random), from.cost);
       if (!put) return std::nullopt;
-      same = same && put->attitude == part.attitude && put->x == part.x && put->y == part.y &&
-             put->z == part.z;
+      same = same && same_place(*put, part);
       rest.push_back(*put);
     }
     if (same) return std::nullopt;
-    return rated(std::move(rest));
+    return put_back_.rated(std::move(rest));
+  }
+
+  // Every part looks for a better place close to its own, from the lowest up.
+  std::optional<Arranged> shaken(const Arranged& from) {
+    std::vector<Standing> parts = from.parts;
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const Standing& a, const Standing& b) { return a.z < b.z; });
+    bool same = true;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      pace_.tick();
+      const Standing part = parts.front();
+      parts.erase(parts.begin());
+      const Standing put = put_back_.nearby(parts, part, from.cost).value_or(part);
+      same = same && same_place(put, part);
+      parts.push_back(put);
+    }
+    if (same) return std::nullopt;
+    return put_back_.rated(std::move(parts));
   }
 
   // The highest part half of the time, and others at random.
@@ -163,16 +121,10 @@ class Rearranger {
   }
 
   std::size_t highest(const std::vector<Standing>& parts) {
-    std::size_t found = 0;
-    int top = -1;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const int here = parts[i].z + coarse_of(parts[i])->rise;
-      if (here > top) {
-        top = here;
-        found = i;
-      }
-    }
-    return found;
+    const auto found = std::max_element(
+        parts.begin(), parts.end(),
+        [&](const Standing& a, const Standing& b) { return put_back_.top(a) < put_back_.top(b); });
+    return static_cast<std::size_t>(found - parts.begin());
   }
 
   std::vector<std::shared_ptr<const Attitude>> attitudes(const Standing& part, Random& random) {
@@ -190,67 +142,10 @@ class Rearranger {
     return chosen;
   }
 
-  std::optional<Standing> put_back(const Arranged& from, const std::vector<Standing>& rest,
-                                   const Standing& part, Random& random) {
-    const std::vector<std::shared_ptr<const Attitude>> tried = attitudes(part, random);
-    Drawings drawings;
-    const SolidTray coarse(coarse_, coarse_places(rest, drawings));
-    std::vector<const SolidPart*> rotations;
-    for (const auto& attitude : tried) {
-      drawings.push_back(solids_.coarse(part.part, attitude, 0, 0));
-      rotations.push_back(drawings.back().get());
-    }
-    SolidRules rules;
-    rules.give_up_above = from.cost;
-    rules.most = kCoveredTried;
-    const TrayMeasure before = measure(coarse, rest);
-    const std::vector<SolidSpot> spots =
-        solid_spots(coarse, before, rotations, volume(part.part), problem_.cost, rules);
-    if (spots.empty()) return std::nullopt;
-    const std::vector<SolidPlace> places = fine_places(rest, drawings);
-    for (const SolidSpot& spot : spots) {
-      const auto& attitude = tried[static_cast<std::size_t>(spot.rotation)];
-      const auto put = settled(from, before, part.part, attitude, spot, places);
-      if (put) return put;
-    }
-    return std::nullopt;
-  }
-
-  // The best place on the fine grid near one that was found on the coarse grid.
-  std::optional<Standing> settled(const Arranged& from, const TrayMeasure& before, int part,
-                                  const std::shared_ptr<const Attitude>& attitude,
-                                  const SolidSpot& spot, const std::vector<SolidPlace>& rest) {
-    const int ratio = solids_.ratio();
-    const std::shared_ptr<const SolidPart> drawing = solids_.fine(part, attitude);
-    SolidRules rules;
-    rules.x = {(spot.x - 1) * ratio, (spot.x + 1) * ratio};
-    rules.y = {(spot.y - 1) * ratio, (spot.y + 1) * ratio};
-    rules.give_up_above = from.cost + kSampling * std::abs(from.cost);
-    const auto window = [&](const Range& positions, int axis) {
-      const int stands_out = fine_.growth() + 1;
-      return Range{
-          positions.first - stands_out,
-          positions.last + stands_out + static_cast<int>(drawing->box.max()[axis] / fine_.cell_mm)};
-    };
-    const SolidTray fine(fine_, rest, {window(rules.x, 0), window(rules.y, 1)});
-    const std::array<const SolidPart*, 1> one{drawing.get()};
-    for (const SolidSpot& found :
-         solid_spots(fine, before, one, volume(part), problem_.cost, rules)) {
-      if (!found.open) {
-        std::vector<SolidPlace> all = rest;
-        all.push_back({drawing.get(), found.x, found.y, found.z});
-        if (!removal_plan(fine_, all)) continue;
-      }
-      return Standing{part, attitude, found.x, found.y, found.z};
-    }
-    return std::nullopt;
-  }
-
   const PackProblem& problem_;
   const std::vector<const Part*>& parts_;
   SolidMaker& solids_;
-  const SolidGrid& coarse_;
-  const SolidGrid& fine_;
+  PutBack& put_back_;
   RotationSet rotations_;
   Pace& pace_;
 };
@@ -262,19 +157,22 @@ SolidGrid solid_grid(const PackProblem& problem, double cell_mm, bool bounds) {
 
 }  // namespace
 
-Packing rearranged(const PackProblem& problem, Packing packing, double finest_mm, PartMaker& maker,
-                   Pace& pace, double until) {
+std::optional<Packing> rearranged(const PackProblem& problem, Packing packing, double finest_mm,
+                                  PartMaker& maker, Pace& pace) {
   const int ratio = std::max(1, static_cast<int>(std::lround(problem.grid_mm / finest_mm)));
   const SolidGrid coarse = solid_grid(problem, finest_mm * ratio, false);
   const SolidGrid fine = solid_grid(problem, finest_mm, true);
   std::vector<const Part*> parts;
+  std::vector<double> volumes;
   std::vector<std::vector<int>> items;
   for (const PlacedPart& placed : packing.parts) {
     items.push_back(placed.items);
     parts.push_back(maker.make(placed.items));
+    volumes.push_back(parts.back()->volume_mm3);
   }
   SolidMaker solids(problem, items, coarse, fine);
-  Rearranger rearranger(problem, parts, solids, coarse, fine, pace);
+  PutBack put_back(problem, volumes, solids, coarse, fine);
+  Rearranger rearranger(problem, parts, solids, put_back, pace);
   Random random(problem.seed);
   packing.removal_order.clear();
   packing.removal_paths.assign(packing.parts.size(), {});
@@ -283,8 +181,7 @@ Packing rearranged(const PackProblem& problem, Packing packing, double finest_mm
     for (std::size_t i = 0; i < packing.parts.size(); ++i)
       if (packing.parts[i].tray == tray)
         standing.push_back(solids.standing(static_cast<int>(i), packing.parts[i].pose));
-    if (standing.size() > 1)
-      standing = rearranger.run(std::move(standing), random.bits(), until).parts;
+    if (standing.size() > 1) standing = rearranger.run(std::move(standing), random.bits());
     std::vector<std::shared_ptr<const SolidPart>> drawings;
     std::vector<SolidPlace> places;
     for (const Standing& one : standing) {
@@ -293,7 +190,7 @@ Packing rearranged(const PackProblem& problem, Packing packing, double finest_mm
       packing.parts[static_cast<std::size_t>(one.part)].pose = solids.pose(one);
     }
     const std::optional<RemovalPlan> plan = removal_plan(fine, places);
-    if (!plan) throw Error(Fault::kInternal, "A tray cannot be taken apart", "Report this model.");
+    if (!plan) return std::nullopt;
     for (const int index : plan->order) {
       const auto part = static_cast<std::size_t>(standing[static_cast<std::size_t>(index)].part);
       packing.removal_order.push_back(static_cast<int>(part));

@@ -218,7 +218,8 @@ void Pace::tick() {
 
 double Pace::passed() const {
   if (budget_s_ <= 0) return 0;
-  return std::min(1.0, std::chrono::duration<double>(Clock::now() - start_).count() / budget_s_);
+  return std::min(
+      1.0, std::chrono::duration<double>(Clock::now() - start_).count() / (share_ * budget_s_));
 }
 
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,

@@ -25,14 +25,18 @@ class Pace {
   void reached(double fraction);
   // To be called often: reports from time to time, and throws when cancellation was asked for.
   void tick();
-  // The share of the budget that has passed, 0 without one; 1: time is up.
+  // How much of the budget has passed, 0 without one; 1: time is up.
   double passed() const;
+  // From now on, passed() is counted in this share of the budget: a stage's own. Not while other
+  // threads ask.
+  void set_share(double share) { share_ = share; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
   Progress progress_;
   double budget_s_;
+  double share_ = 1;
   Clock::time_point start_;
   std::mutex mutex_;
   Clock::time_point reported_;

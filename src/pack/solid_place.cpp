@@ -10,7 +10,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kTolerance_mm = 1e-9;
-constexpr int kSamePlace_cells = 3;
+constexpr int kSamePlace_cells = 4;
 constexpr int kLookEvery = 8;  // meetings, before asking whether all heights are taken
 
 auto rank(const SolidSpot& spot) {

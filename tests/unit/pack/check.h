@@ -119,6 +119,51 @@ inline void expect_rigid(const Pose& pose) {
   EXPECT_NEAR(pose.linear().determinant(), 1, 1e-12);
 }
 
+// Taken out in the order told, each along its path and then straight up, nothing that is still
+// there may be in the way.
+inline void expect_removable(const PackProblem& problem, const Packing& packing,
+                             const std::vector<std::vector<Triangle>>& placed,
+                             double column_step_mm) {
+  constexpr double kStep_mm = 0.2;
+  const std::vector<int>& order = packing.removal_order;
+  ASSERT_EQ(order.size(), packing.parts.size());
+  ASSERT_EQ(packing.removal_paths.size(), packing.parts.size());
+  std::set<int> there(order.begin(), order.end());
+  ASSERT_EQ(there.size(), order.size());
+  std::vector<Columns> columns;
+  for (const auto& triangles : placed)
+    columns.emplace_back(triangles, problem.build_mm, column_step_mm);
+  for (const int taken : order) {
+    there.erase(taken);
+    const auto at = static_cast<std::size_t>(taken);
+    std::vector<Triangle> moving = placed[at];
+    const auto move = [&moving](const Vec3& by) {
+      for (Triangle& triangle : moving)
+        for (Vec3& corner : triangle) corner += by;
+    };
+    for (const Vec3& step : packing.removal_paths[at]) {
+      const int count = static_cast<int>(std::ceil(step.norm() / kStep_mm));
+      for (int i = 0; i < count; ++i) {
+        move(step / count);
+        for (const int other : there)
+          if (packing.parts[static_cast<std::size_t>(other)].tray == packing.parts[at].tray) {
+            ASSERT_GT(brute_force_distance(moving, placed[static_cast<std::size_t>(other)]), 0.01)
+                << taken << " meets " << other << " on its way";
+          }
+      }
+    }
+    const Columns up = packing.removal_paths[at].empty()
+                           ? columns[at]
+                           : Columns(moving, problem.build_mm, column_step_mm);
+    for (const int other : there) {
+      if (packing.parts[static_cast<std::size_t>(other)].tray != packing.parts[at].tray) continue;
+      const Columns& rest = columns[static_cast<std::size_t>(other)];
+      for (std::size_t cell = 0; cell < up.low.size(); ++cell)
+        ASSERT_FALSE(rest.high[cell] > up.low[cell]) << taken << " is caught under " << other;
+    }
+  }
+}
+
 // Everything that src/pack/pack.h promises, but for what only a second run can show.
 inline void expect_valid(const PackProblem& problem, const Packing& packing,
                          double column_step_mm) {
@@ -172,26 +217,7 @@ inline void expect_valid(const PackProblem& problem, const Packing& packing,
             << i << " " << j;
       }
 
-  // Lifted straight up, nothing that is still there may be in the way.
-  std::vector<int> order = packing.removal_order;
-  ASSERT_EQ(order.size(), packing.parts.size());
-  std::vector<Columns> columns;
-  for (const auto& triangles : placed)
-    columns.emplace_back(triangles, problem.build_mm, column_step_mm);
-  std::set<int> there(order.begin(), order.end());
-  EXPECT_EQ(there.size(), order.size());
-  for (const int lifted : order) {
-    there.erase(lifted);
-    const Columns& up = columns[static_cast<std::size_t>(lifted)];
-    for (const int other : there) {
-      if (packing.parts[static_cast<std::size_t>(other)].tray !=
-          packing.parts[static_cast<std::size_t>(lifted)].tray)
-        continue;
-      const Columns& rest = columns[static_cast<std::size_t>(other)];
-      for (std::size_t at = 0; at < up.low.size(); ++at)
-        ASSERT_FALSE(rest.high[at] > up.low[at]) << lifted << " is caught under " << other;
-    }
-  }
+  expect_removable(problem, packing, placed, column_step_mm);
 }
 
 }  // namespace packmerger::check

@@ -1,0 +1,71 @@
+// One part put on a tray where others stand, anywhere it is free and can be taken out again.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "model/packing.h"
+#include "pack/solid_place.h"
+#include "pack/standing.h"
+
+namespace packmerger {
+
+// The parts of a tray and what they cost.
+struct Arranged {
+  std::vector<Standing> parts;
+  double cost = 0;    // Cost::evaluate, support counted on the coarse grid
+  double unrest = 0;  // of equal costs the lesser is better: how far up matter lies
+};
+
+// coarse: of samples, where places are looked for; fine: of bounds, where parts are put.
+// Thread-safe; everything handed in must outlive it.
+class PutBack {
+ public:
+  PutBack(const PackProblem& problem, const std::vector<double>& volumes_mm3, SolidMaker& solids,
+          const SolidGrid& coarse, const SolidGrid& fine)
+      : problem_(problem),
+        volumes_mm3_(volumes_mm3),
+        solids_(solids),
+        coarse_(coarse),
+        fine_(fine) {}
+
+  // The parts as they stand, but all moved down together until one stands on the plate.
+  Arranged rated(std::vector<Standing> parts);
+
+  // Upper side, units.
+  int top(const Standing& part) { return part.z + coarse_of(part)->rise; }
+
+  // The cheapest place for a part in one of the attitudes; nothing where the tray then costs more
+  // than most_cost, or the part or others would have no way out.
+  std::optional<Standing> anywhere(const std::vector<Standing>& rest, int part,
+                                   const std::vector<std::shared_ptr<const Attitude>>& attitudes,
+                                   double most_cost);
+
+  // The same within two coarse cells of where the part stood, in its attitude.
+  std::optional<Standing> nearby(const std::vector<Standing>& rest, const Standing& part,
+                                 double most_cost);
+
+ private:
+  // Keeps the drawings alive that places point to.
+  struct Scene {
+    std::vector<std::shared_ptr<const SolidPart>> drawings;
+    std::vector<SolidPlace> places;
+  };
+
+  Scene fine_scene(const std::vector<Standing>& parts);
+  Scene coarse_scene(const std::vector<Standing>& parts);
+  std::shared_ptr<const SolidPart> coarse_of(const Standing& part);
+  TrayMeasure measure(const SolidTray& tray, const std::vector<Standing>& parts) const;
+  std::optional<Standing> settled(const std::vector<SolidPlace>& rest, const TrayMeasure& before,
+                                  const Standing& near, double most_cost);
+  double volume(int part) const { return volumes_mm3_[static_cast<std::size_t>(part)]; }
+
+  const PackProblem& problem_;
+  const std::vector<double>& volumes_mm3_;  // by part
+  SolidMaker& solids_;
+  const SolidGrid& coarse_;
+  const SolidGrid& fine_;
+};
+
+}  // namespace packmerger
