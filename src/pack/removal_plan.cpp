@@ -7,55 +7,42 @@
 namespace packmerger {
 namespace {
 
-// One part over one cell.
-struct Slab {
-  int part;
-  int low;
-  int high;
-};
+// Whether b stands above some matter of a, so that a cannot be lifted before it.
+bool blocks(const SolidPlace& a, const SolidPlace& b) {
+  const Outline& lower = a.part->outline;
+  const Outline& upper = b.part->outline;
+  const int ax = a.x + lower.x0;
+  const int ay = a.y + lower.y0;
+  const int bx = b.x + upper.x0;
+  const int by = b.y + upper.y0;
+  const int first = std::max(ax, bx);
+  const int count = std::min(ax + lower.width, bx + upper.width) - first;
+  const int last_row = std::min(ay + lower.height, by + upper.height) - 1;
+  if (count <= 0) return false;
+  const int rise = b.z - a.z;
+  for (int y = std::max(ay, by); y <= last_row; ++y) {
+    const Height* low = &lower.low[static_cast<std::size_t>((y - ay) * lower.width + first - ax)];
+    const Height* top = &upper.top[static_cast<std::size_t>((y - by) * upper.width + first - bx)];
+    int over = 0;  // counted without a branch, so that many cells are compared at once
+    for (int i = 0; i < count; ++i) over += top[i] + rise > low[i];
+    if (over > 0) return true;
+  }
+  return false;
+}
 
-// blocks[a][b]: b stands above some matter of a, so that a cannot be lifted before it.
-std::vector<std::vector<bool>> blocking(const SolidGrid& grid,
-                                        const std::vector<SolidPlace>& places) {
-  const auto columns = static_cast<std::size_t>(grid.columns());
-  std::vector<std::int32_t> first(columns * static_cast<std::size_t>(grid.rows()) + 1, 0);
-  const auto for_each_cell = [&](const auto& body) {
-    for (std::size_t part = 0; part < places.size(); ++part) {
-      const std::vector<SpanCell>& spans = places[part].part->matter;
-      for (std::size_t i = 0, end = 0; i < spans.size(); i = end) {
-        while (end < spans.size() && spans[end].x == spans[i].x && spans[end].y == spans[i].y)
-          ++end;
-        const std::size_t cell = static_cast<std::size_t>(places[part].y + spans[i].y) * columns +
-                                 static_cast<std::size_t>(places[part].x + spans[i].x);
-        body(cell, Slab{static_cast<int>(part), places[part].z + spans[i].low,
-                        places[part].z + spans[end - 1].high});
-      }
-    }
-  };
-  for_each_cell([&](std::size_t cell, const Slab&) { ++first[cell + 1]; });
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  std::vector<Slab> slabs(static_cast<std::size_t>(first.back()));
-  std::vector<std::int32_t> next(first.begin(), first.end() - 1);
-  for_each_cell([&](std::size_t cell, const Slab& slab) {
-    slabs[static_cast<std::size_t>(next[cell]++)] = slab;
-  });
-  std::vector<std::vector<bool>> blocks(places.size(), std::vector<bool>(places.size(), false));
-  for (std::size_t cell = 0; cell + 1 < first.size(); ++cell)
-    for (std::int32_t i = first[cell]; i < first[cell + 1]; ++i)
-      for (std::int32_t j = first[cell]; j < first[cell + 1]; ++j) {
-        const Slab& lower = slabs[static_cast<std::size_t>(i)];
-        const Slab& upper = slabs[static_cast<std::size_t>(j)];
-        if (i != j && upper.high > lower.low)
-          blocks[static_cast<std::size_t>(lower.part)][static_cast<std::size_t>(upper.part)] = true;
-      }
-  return blocks;
+std::vector<std::vector<bool>> blocking(const std::vector<SolidPlace>& places) {
+  std::vector<std::vector<bool>> result(places.size(), std::vector<bool>(places.size(), false));
+  for (std::size_t a = 0; a < places.size(); ++a)
+    for (std::size_t b = 0; b < places.size(); ++b)
+      if (a != b) result[a][b] = blocks(places[a], places[b]);
+  return result;
 }
 
 }  // namespace
 
 std::optional<RemovalPlan> removal_plan(const SolidGrid& grid,
                                         const std::vector<SolidPlace>& places) {
-  const std::vector<std::vector<bool>> blocks = blocking(grid, places);
+  const std::vector<std::vector<bool>> blocked_by = blocking(places);
   RemovalPlan plan;
   plan.paths.resize(places.size());
   std::vector<int> there;
@@ -67,7 +54,7 @@ std::optional<RemovalPlan> removal_plan(const SolidGrid& grid,
   while (!there.empty()) {
     const auto lifted = std::find_if(there.rbegin(), there.rend(), [&](int part) {
       return std::none_of(there.begin(), there.end(), [&](int other) {
-        return blocks[static_cast<std::size_t>(part)][static_cast<std::size_t>(other)];
+        return blocked_by[static_cast<std::size_t>(part)][static_cast<std::size_t>(other)];
       });
     });
     if (lifted != there.rend()) {

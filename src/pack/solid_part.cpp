@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "pack/columns.h"
@@ -187,6 +188,28 @@ void merge_spans(std::vector<SpanCell>& spans) {
   spans.resize(spans.empty() ? 0 : kept + 1);
 }
 
+Outline outline_of(const std::vector<SpanCell>& cells) {
+  Outline outline;
+  if (cells.empty()) return outline;
+  const auto [left, right] = std::minmax_element(
+      cells.begin(), cells.end(), [](const SpanCell& a, const SpanCell& b) { return a.x < b.x; });
+  outline.x0 = left->x;
+  outline.y0 = cells.front().y;
+  outline.width = right->x - left->x + 1;
+  outline.height = cells.back().y - cells.front().y + 1;
+  const auto count =
+      static_cast<std::size_t>(outline.width) * static_cast<std::size_t>(outline.height);
+  outline.low.assign(count, std::numeric_limits<Height>::max());
+  outline.top.assign(count, std::numeric_limits<Height>::min());
+  for (const SpanCell& cell : cells) {
+    const auto at =
+        static_cast<std::size_t>((cell.y - outline.y0) * outline.width + cell.x - outline.x0);
+    outline.low[at] = std::min(outline.low[at], cell.low);
+    outline.top[at] = std::max(outline.top[at], cell.high);
+  }
+  return outline;
+}
+
 int cells_in(double mm, double cell_mm) {
   return std::max(1, static_cast<int>(std::ceil(mm / cell_mm - kCellTolerance)));
 }
@@ -257,6 +280,7 @@ SolidPart solid_part(const std::vector<TriangleSoup>& surfaces, const SolidGrid&
   part.matter = grid.bounds
                     ? bounds(sorted_extents(surfaces, grid.cell_mm), crossings, grid.unit_mm)
                     : part.centres;
+  part.outline = outline_of(part.matter);
   part.reach = grown(part.matter, grid, grid.gap_mm);
   // From all over the part first, so that a scan soon knows that a position is not free.
   constexpr std::size_t kStride = 16;

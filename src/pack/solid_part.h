@@ -36,6 +36,16 @@ struct SolidGrid {
   Height ceiling() const;  // the build volume's height, units
 };
 
+// The lowest and the highest matter over each cell of a rectangle; low > top where there is none.
+struct Outline {
+  int x0 = 0;
+  int y0 = 0;
+  int width = 0;
+  int height = 0;
+  std::vector<Height> low;  // rows of `width`
+  std::vector<Height> top;
+};
+
 // Cell (i, j) is [i·cell, (i+1)·cell] × [j·cell, (j+1)·cell]. A position (x, y, z) moves the part
 // by x and y whole cells and z units.
 struct SolidPart {
@@ -44,6 +54,7 @@ struct SolidPart {
   std::vector<SpanCell> matter;   // by y, x and height; spans of a cell do not touch
   std::vector<SpanCell> reach;    // the same grown by the gap in every direction, any order
   std::vector<SpanCell> centres;  // what the lines through the cells' centres meet
+  Outline outline;                // of `matter`
 };
 
 // surfaces: closed, normals outward, mm, in the frame of the position (0, 0, 0), the lowest point

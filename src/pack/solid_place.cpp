@@ -14,7 +14,7 @@ constexpr int kSamePlace_cells = 4;
 constexpr int kLookEvery = 8;  // meetings, before asking whether all heights are taken
 
 auto rank(const SolidSpot& spot) {
-  return std::tuple(spot.cost, spot.top, spot.z, spot.y, spot.x, spot.rotation);
+  return std::tuple(spot.cost, spot.top, spot.rotation, spot.y, spot.x);
 }
 
 // What was found in all rotations so far.
@@ -22,14 +22,15 @@ class Found {
  public:
   Found(double give_up_above, std::size_t most) : give_up_above_(give_up_above), most_(most) {}
 
-  // Whether a place of at least this cost and this top may still be told.
+  // Whether a place of at least this cost and this top may still be told: places are looked at in
+  // the order in which they win ties.
   bool wanted(double cost, int top) const {
     if (cost > give_up_above_) return false;
     const SolidSpot* worst = open_ ? &*open_ : nullptr;
     if (covered_.size() == most_ && most_ > 0 &&
         (worst == nullptr || rank(covered_.back()) < rank(*worst)))
       worst = &covered_.back();
-    return worst == nullptr || std::tie(cost, top) <= std::tie(worst->cost, worst->top);
+    return worst == nullptr || std::tie(cost, top) < std::tie(worst->cost, worst->top);
   }
 
   // Whether it was taken.

@@ -31,7 +31,7 @@ struct SolidRules {
 
 // Of every position at most one place for each stretch of heights at which the part is free: its
 // lowest (of stretches shorter than 1/256 of the tray, some are not seen). Cheapest first; of equal
-// costs the lowest top wins, then the least z, y, x and rotation. The best place with nothing above
+// costs the lowest top wins, then the least rotation, y and x. The best place with nothing above
 // is the last: what lies below something costs less, or it is not told. Of two places below
 // something in one rotation that lie closer than a few cells only the better is told.
 // `before` is the tray's measure without the part.

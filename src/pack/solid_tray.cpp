@@ -64,7 +64,7 @@ SolidTray::SolidTray(const SolidGrid& grid, const std::vector<SolidPlace>& place
   cells_.x = intersection(window.x, {-border, grid.columns() + border - 1});
   cells_.y = intersection(window.y, {-border, grid.rows() + border - 1});
   stride_ = cells_.x.count();
-  matter_ = columns_of(places, &SolidPart::matter);
+  if (grid.bounds) matter_ = columns_of(places, &SolidPart::matter);
   centres_ = columns_of(places, &SolidPart::centres);
   for (const SolidPlace& place : places) {
     const Vec3 at(place.x * grid.cell_mm, place.y * grid.cell_mm, place.z * grid.unit_mm);
@@ -84,8 +84,15 @@ SolidTray::Columns SolidTray::columns_of(const std::vector<SolidPlace>& places,
                                          std::vector<SpanCell> SolidPart::*spans) const {
   Columns columns;
   columns.first.assign(static_cast<std::size_t>(stride_ * cells_.y.count()) + 1, 0);
+  const auto stands_in = [&](const SolidPlace& place) {
+    const Vec3 low = place.part->box.min() / grid_.cell_mm;
+    const Vec3 high = place.part->box.max() / grid_.cell_mm;
+    return place.x + low.x() <= cells_.x.last + 1 && place.x + high.x() >= cells_.x.first &&
+           place.y + low.y() <= cells_.y.last + 1 && place.y + high.y() >= cells_.y.first;
+  };
   const auto for_each_span = [&](const auto& body) {
-    for (const SolidPlace& place : places)
+    for (const SolidPlace& place : places) {
+      if (!stands_in(place)) continue;
       for (const SpanCell& cell : place.part->*spans) {
         const int x = place.x + cell.x;
         const int y = place.y + cell.y;
@@ -93,6 +100,7 @@ SolidTray::Columns SolidTray::columns_of(const std::vector<SolidPlace>& places,
           body(index(x, y), Span{static_cast<Height>(cell.low + place.z),
                                  static_cast<Height>(cell.high + place.z), cell.hangs});
       }
+    }
   };
   for_each_span([&](std::size_t cell, const Span&) { ++columns.first[cell + 1]; });
   for (std::size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];

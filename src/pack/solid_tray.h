@@ -90,11 +90,12 @@ class SolidTray {
   // returns false. The part lies within the build volume, but for `reach`.
   template <typename Between>
   void meetings(const std::vector<SpanCell>& reach, int x, int y, const Between& between) const {
-    const std::int32_t* at = &matter_.first[index(x, y)];
+    const Columns& matter = grid_.bounds ? matter_ : centres_;
+    const std::int32_t* at = &matter.first[index(x, y)];
     for (const SpanCell& cell : reach) {
       const std::int32_t* column = at + cell.y * stride_ + cell.x;
       for (std::int32_t i = column[0]; i < column[1]; ++i) {
-        const Span& span = matter_.spans[static_cast<std::size_t>(i)];
+        const Span& span = matter.spans[static_cast<std::size_t>(i)];
         if (!between(span.low - cell.high, span.high - cell.low)) return;
       }
     }
@@ -126,7 +127,7 @@ class SolidTray {
   const SolidGrid& grid_;
   CellWindow cells_;  // with a border for what stands out of the tray
   int stride_;
-  Columns matter_;
+  Columns matter_;  // of bounds; samples are the centres themselves
   Columns centres_;
   Box3 contents_;
   double support_mm3_ = 0;
