@@ -214,7 +214,7 @@ Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
 // With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
 Packing put_under(const PackProblem& problem, Packing dropped, PartMaker& maker, Pace& pace) {
   std::optional<Packing> better =
-      rearranged(problem, dropped, problem.grid_mm * kFinestShare, maker, pace);
+      rearranged(problem, dropped, finest_cell_mm(problem), maker, pace);
   if (!better) return dropped;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);
   measure(problem, *better);

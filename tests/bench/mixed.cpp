@@ -1,5 +1,6 @@
-#include <chrono>
+#include <algorithm>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -9,7 +10,9 @@
 
 #include "base/random.h"
 #include "bench/bench.h"
+#include "bench/reference_problem.h"
 #include "bench/reference_search.h"
+#include "bench/stopwatch.h"
 #include "pack/pack.h"
 #include "unit/pack/shapes.h"
 
@@ -106,24 +109,39 @@ PackProblem mixed_problem(std::uint64_t seed) {
   problem.grid_mm = 1;
   problem.search_grid_mm = 2;
   problem.rotation_step = radians(90);
-  problem.search_rotation_step = radians(90);
   problem.cost.evaluate = [](const TrayMeasure& tray) { return tray.size_mm.z(); };
   problem.cost.lower_bound = problem.cost.evaluate;
   problem.seed = seed;
   return problem;
 }
 
+// The paper's search, begun again from other orders until the time is up.
+OrderSearch reference_for(const PackProblem& problem, double limit_s) {
+  const Stopwatch watch;
+  ReferencePacker packer(problem);
+  const DrawnParts parts = draw_items(problem, packer);
+  Random random(problem.seed);
+  OrderSearch best;
+  best.cost = std::numeric_limits<double>::infinity();
+  do {
+    const OrderSearch one = search_order(parts.maps, parts.volumes_mm3, problem, packer, random,
+                                         std::max(0.1, limit_s - watch.seconds()));
+    best.cost = std::min(best.cost, one.cost);
+    best.packings += one.packings;
+  } while (watch.seconds() < limit_s);
+  return best;
+}
+
 void run(const Arguments& arguments) {
   PackProblem problem = mixed_problem(arguments.seed);
   double volume = 0;
   for (const PackItem& item : problem.items) volume += item.volume_mm3;
-  ReferencePacker packer(problem);
-  const ReferenceAnswer reference = reference_search(problem, packer, arguments.seconds);
+  const OrderSearch reference = reference_for(problem, arguments.seconds);
 
   problem.budget_s = arguments.seconds;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Packing packing = pack(problem, {});
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  const double taken_s = watch.seconds();
   int paths = 0;
   for (const auto& path : packing.removal_paths) paths += path.empty() ? 0 : 1;
 
@@ -137,7 +155,7 @@ void run(const Arguments& arguments) {
   told["ratio"] = packing.cost / reference.cost;
   told["density"] = volume / (1e4 * packing.cost);
   told["removal_paths"] = paths;
-  told["seconds"] = taken.count();
+  told["seconds"] = taken_s;
   if (arguments.json)
     std::cout << told.dump(2) << '\n';
   else
