@@ -16,46 +16,46 @@ constexpr std::size_t kCoveredTried = 4;  // places below something
 
 }  // namespace
 
-PutBack::Scene PutBack::fine_scene(const std::vector<Standing>& parts) {
+PutBack::Scene PutBack::fine_scene(const std::vector<StandingPart>& parts) {
   Scene scene;
-  for (const Standing& one : parts) {
+  for (const StandingPart& one : parts) {
     scene.drawings.push_back(solids_.fine(one.part, one.attitude));
     scene.places.push_back({scene.drawings.back().get(), one.x, one.y, one.z});
   }
   return scene;
 }
 
-PutBack::Scene PutBack::coarse_scene(const std::vector<Standing>& parts) {
+PutBack::Scene PutBack::coarse_scene(const std::vector<StandingPart>& parts) {
   Scene scene;
   const int ratio = solids_.ratio();
-  for (const Standing& one : parts) {
+  for (const StandingPart& one : parts) {
     scene.drawings.push_back(coarse_of(one));
     scene.places.push_back({scene.drawings.back().get(), one.x / ratio, one.y / ratio, one.z});
   }
   return scene;
 }
 
-std::shared_ptr<const SolidPart> PutBack::coarse_of(const Standing& part) {
+std::shared_ptr<const SolidPart> PutBack::coarse_of(const StandingPart& part) {
   return solids_.coarse(part.part, part.attitude, part.x % solids_.ratio(),
                         part.y % solids_.ratio());
 }
 
-TrayMeasure PutBack::measure(const SolidTray& tray, const std::vector<Standing>& parts) const {
+TrayMeasure PutBack::measure(const SolidTray& tray, const std::vector<StandingPart>& parts) const {
   TrayMeasure measure;
   if (parts.empty()) return measure;
   const Vec3 size = tray.contents().sizes();
   measure.size_mm = Vec3(size.x(), size.y(), tray.contents().max().z());
   measure.support_mm3 = tray.support_mm3();
-  for (const Standing& one : parts) measure.material_mm3 += volume(one.part);
+  for (const StandingPart& one : parts) measure.material_mm3 += volume(one.part);
   measure.parts = static_cast<int>(parts.size());
   return measure;
 }
 
-Arranged PutBack::rated(std::vector<Standing> parts) {
+Arranged PutBack::rated(std::vector<StandingPart> parts) {
   int lowest = std::numeric_limits<int>::max();
-  for (const Standing& part : parts) lowest = std::min(lowest, part.z);
+  for (const StandingPart& part : parts) lowest = std::min(lowest, part.z);
   Arranged arranged;
-  for (Standing& part : parts) {
+  for (StandingPart& part : parts) {
     part.z -= lowest;
     const double top_mm = top(part) * coarse_.unit_mm;
     arranged.unrest += volume(part.part) * top_mm * top_mm;
@@ -66,8 +66,8 @@ Arranged PutBack::rated(std::vector<Standing> parts) {
   return arranged;
 }
 
-std::optional<Standing> PutBack::anywhere(
-    const std::vector<Standing>& rest, int part,
+std::optional<StandingPart> PutBack::anywhere(
+    const std::vector<StandingPart>& rest, int part,
     const std::vector<std::shared_ptr<const Attitude>>& attitudes, double most_cost) {
   const Scene scene = coarse_scene(rest);
   const SolidTray tray(coarse_, scene.places);
@@ -87,24 +87,24 @@ std::optional<Standing> PutBack::anywhere(
   const Scene standing = fine_scene(rest);
   const int ratio = solids_.ratio();
   for (const SolidSpot& spot : spots) {
-    const Standing near{part, attitudes[static_cast<std::size_t>(spot.rotation)], spot.x * ratio,
-                        spot.y * ratio, spot.z};
+    const StandingPart near{part, attitudes[static_cast<std::size_t>(spot.rotation)],
+                            spot.x * ratio, spot.y * ratio, spot.z};
     const auto put = settled(standing.places, before, near, most_cost);
     if (put) return put;
   }
   return std::nullopt;
 }
 
-std::optional<Standing> PutBack::nearby(const std::vector<Standing>& rest, const Standing& part,
-                                        double most_cost) {
+std::optional<StandingPart> PutBack::nearby(const std::vector<StandingPart>& rest,
+                                            const StandingPart& part, double most_cost) {
   const Scene scene = coarse_scene(rest);
   const SolidTray tray(coarse_, scene.places);
   return settled(fine_scene(rest).places, measure(tray, rest), part, most_cost);
 }
 
-std::optional<Standing> PutBack::settled(const std::vector<SolidPlace>& rest,
-                                         const TrayMeasure& before, const Standing& near,
-                                         double most_cost) {
+std::optional<StandingPart> PutBack::settled(const std::vector<SolidPlace>& rest,
+                                             const TrayMeasure& before, const StandingPart& near,
+                                             double most_cost) {
   const std::shared_ptr<const SolidPart> drawing = solids_.fine(near.part, near.attitude);
   SolidRules rules;
   const int reach = kSettleCells * solids_.ratio();
@@ -126,7 +126,7 @@ std::optional<Standing> PutBack::settled(const std::vector<SolidPlace>& rest,
       all.push_back({drawing.get(), spot.x, spot.y, spot.z});
       if (!removal_plan(fine_, all)) continue;
     }
-    return Standing{near.part, near.attitude, spot.x, spot.y, spot.z};
+    return StandingPart{near.part, near.attitude, spot.x, spot.y, spot.z};
   }
   return std::nullopt;
 }

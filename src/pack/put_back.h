@@ -13,7 +13,7 @@ namespace packmerger {
 
 // The parts of a tray and what they cost.
 struct Arranged {
-  std::vector<Standing> parts;
+  std::vector<StandingPart> parts;
   double cost = 0;    // Cost::evaluate, support counted on the coarse grid
   double unrest = 0;  // of equal costs the lesser is better: how far up matter lies
 };
@@ -31,20 +31,20 @@ class PutBack {
         fine_(fine) {}
 
   // The parts as they stand, but all moved down together until one stands on the plate.
-  Arranged rated(std::vector<Standing> parts);
+  Arranged rated(std::vector<StandingPart> parts);
 
   // Upper side, units.
-  int top(const Standing& part) { return part.z + coarse_of(part)->rise; }
+  int top(const StandingPart& part) { return part.z + coarse_of(part)->rise; }
 
   // The cheapest place for a part in one of the attitudes; nothing where the tray then costs more
   // than most_cost, or the part or others would have no way out.
-  std::optional<Standing> anywhere(const std::vector<Standing>& rest, int part,
-                                   const std::vector<std::shared_ptr<const Attitude>>& attitudes,
-                                   double most_cost);
+  std::optional<StandingPart> anywhere(
+      const std::vector<StandingPart>& rest, int part,
+      const std::vector<std::shared_ptr<const Attitude>>& attitudes, double most_cost);
 
   // The same within two coarse cells of where the part stood, in its attitude.
-  std::optional<Standing> nearby(const std::vector<Standing>& rest, const Standing& part,
-                                 double most_cost);
+  std::optional<StandingPart> nearby(const std::vector<StandingPart>& rest,
+                                     const StandingPart& part, double most_cost);
 
  private:
   // Keeps the drawings alive that places point to.
@@ -53,12 +53,13 @@ class PutBack {
     std::vector<SolidPlace> places;
   };
 
-  Scene fine_scene(const std::vector<Standing>& parts);
-  Scene coarse_scene(const std::vector<Standing>& parts);
-  std::shared_ptr<const SolidPart> coarse_of(const Standing& part);
-  TrayMeasure measure(const SolidTray& tray, const std::vector<Standing>& parts) const;
-  std::optional<Standing> settled(const std::vector<SolidPlace>& rest, const TrayMeasure& before,
-                                  const Standing& near, double most_cost);
+  Scene fine_scene(const std::vector<StandingPart>& parts);
+  Scene coarse_scene(const std::vector<StandingPart>& parts);
+  std::shared_ptr<const SolidPart> coarse_of(const StandingPart& part);
+  TrayMeasure measure(const SolidTray& tray, const std::vector<StandingPart>& parts) const;
+  std::optional<StandingPart> settled(const std::vector<SolidPlace>& rest,
+                                      const TrayMeasure& before, const StandingPart& near,
+                                      double most_cost);
   double volume(int part) const { return volumes_mm3_[static_cast<std::size_t>(part)]; }
 
   const PackProblem& problem_;

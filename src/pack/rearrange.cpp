@@ -23,7 +23,7 @@ bool better(const Arranged& a, const Arranged& b) {
   return std::tie(a.cost, a.unrest) < std::tie(b.cost, b.unrest);
 }
 
-bool same_place(const Standing& a, const Standing& b) {
+bool same_place(const StandingPart& a, const StandingPart& b) {
   return a.attitude == b.attitude && a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
@@ -39,7 +39,7 @@ class Rearranger {
         rotations_(rotation_set(problem.rotation_step)),
         pace_(pace) {}
 
-  std::vector<Standing> run(std::vector<Standing> standing, std::uint64_t seed) {
+  std::vector<StandingPart> run(std::vector<StandingPart> standing, std::uint64_t seed) {
     Random random(seed);
     Arranged current = put_back_.rated(std::move(standing));
     int rounds_without_better = 0;
@@ -74,10 +74,10 @@ class Rearranger {
 
   // Takes some parts out and puts them back one after the other.
   std::optional<Arranged> moved(const Arranged& from, Random& random) {
-    std::vector<Standing> rest = from.parts;
-    const std::vector<Standing> taken = taken_out(rest, random);
+    std::vector<StandingPart> rest = from.parts;
+    const std::vector<StandingPart> taken = taken_out(rest, random);
     bool same = true;
-    for (const Standing& part : taken) {
+    for (const StandingPart& part : taken) {
       pace_.tick();
       const auto put = put_back_.anywhere(rest, part.part, attitudes(part, random), from.cost);
       if (!put) return std::nullopt;
@@ -90,15 +90,15 @@ class Rearranger {
 
   // Every part looks for a better place close to its own, from the lowest up.
   std::optional<Arranged> shaken(const Arranged& from) {
-    std::vector<Standing> parts = from.parts;
+    std::vector<StandingPart> parts = from.parts;
     std::stable_sort(parts.begin(), parts.end(),
-                     [](const Standing& a, const Standing& b) { return a.z < b.z; });
+                     [](const StandingPart& a, const StandingPart& b) { return a.z < b.z; });
     bool same = true;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       pace_.tick();
-      const Standing part = parts.front();
+      const StandingPart part = parts.front();
       parts.erase(parts.begin());
-      const Standing put = put_back_.nearby(parts, part, from.cost).value_or(part);
+      const StandingPart put = put_back_.nearby(parts, part, from.cost).value_or(part);
       same = same && same_place(put, part);
       parts.push_back(put);
     }
@@ -107,8 +107,8 @@ class Rearranger {
   }
 
   // The highest part half of the time, and others at random.
-  std::vector<Standing> taken_out(std::vector<Standing>& rest, Random& random) {
-    std::vector<Standing> taken;
+  std::vector<StandingPart> taken_out(std::vector<StandingPart>& rest, Random& random) {
+    std::vector<StandingPart> taken;
     const std::size_t count = std::min(rest.size(), 1 + random.below(kMostTakenOut));
     while (taken.size() < count) {
       std::size_t chosen = random.below(rest.size());
@@ -120,14 +120,15 @@ class Rearranger {
     return taken;
   }
 
-  std::size_t highest(const std::vector<Standing>& parts) {
-    const auto found = std::max_element(
-        parts.begin(), parts.end(),
-        [&](const Standing& a, const Standing& b) { return put_back_.top(a) < put_back_.top(b); });
+  std::size_t highest(const std::vector<StandingPart>& parts) {
+    const auto found = std::max_element(parts.begin(), parts.end(),
+                                        [&](const StandingPart& a, const StandingPart& b) {
+                                          return put_back_.top(a) < put_back_.top(b);
+                                        });
     return static_cast<std::size_t>(found - parts.begin());
   }
 
-  std::vector<std::shared_ptr<const Attitude>> attitudes(const Standing& part, Random& random) {
+  std::vector<std::shared_ptr<const Attitude>> attitudes(const StandingPart& part, Random& random) {
     std::vector<std::shared_ptr<const Attitude>> chosen{part.attitude};
     const std::vector<WayUp>& ways = parts_[static_cast<std::size_t>(part.part)]->ways;
     for (std::size_t i = 1; i < kRotationsTried; ++i) {
@@ -177,14 +178,14 @@ std::optional<Packing> rearranged(const PackProblem& problem, Packing packing, d
   packing.removal_order.clear();
   packing.removal_paths.assign(packing.parts.size(), {});
   for (int tray = 0; tray < static_cast<int>(packing.trays.size()); ++tray) {
-    std::vector<Standing> standing;
+    std::vector<StandingPart> standing;
     for (std::size_t i = 0; i < packing.parts.size(); ++i)
       if (packing.parts[i].tray == tray)
         standing.push_back(solids.standing(static_cast<int>(i), packing.parts[i].pose));
     if (standing.size() > 1) standing = rearranger.run(std::move(standing), random.bits());
     std::vector<std::shared_ptr<const SolidPart>> drawings;
     std::vector<SolidPlace> places;
-    for (const Standing& one : standing) {
+    for (const StandingPart& one : standing) {
       drawings.push_back(solids.fine(one.part, one.attitude));
       places.push_back({drawings.back().get(), one.x, one.y, one.z});
       packing.parts[static_cast<std::size_t>(one.part)].pose = solids.pose(one);

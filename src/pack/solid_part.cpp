@@ -24,9 +24,10 @@ struct Extent {
   double high;
 };
 
-// A convex piece of a facet, x and y in cells; clipped by four lines it has seven corners at most.
+// A convex piece of a facet, x and y in cells. Clipped by four lines it has seven corners, or some
+// more where rounding makes a sliver wind about a line.
 struct Piece {
-  std::array<Vec3, 8> corner;
+  std::array<Vec3, 16> corner;
   std::size_t count = 0;
 
   void add(const Vec3& point) { corner[count++] = point; }
@@ -41,8 +42,10 @@ Piece clipped(const Piece& piece, int axis, double limit, double sign) {
     const double inside = sign * (from[axis] - limit);
     const double next = sign * (to[axis] - limit);
     if (inside >= 0) rest.add(from);
-    if ((inside > 0 && next < 0) || (inside < 0 && next > 0))
+    if ((inside > 0 && next < 0) || (inside < 0 && next > 0)) {
       rest.add(from + (to - from) * (inside / (inside - next)));
+      rest.corner[rest.count - 1][axis] = limit;
+    }
   }
   return rest;
 }

@@ -51,7 +51,7 @@ std::shared_ptr<const Attitude> SolidMaker::attitude(int part, const Mat3& rotat
   return attitudes_.emplace(key, std::move(made)).first->second;
 }
 
-Standing SolidMaker::standing(int part, const Pose& pose) const {
+StandingPart SolidMaker::standing(int part, const Pose& pose) const {
   const Box3 box = box_of(shapes_[static_cast<std::size_t>(part)], pose.linear());
   const Vec3 corner = box.min() + pose.translation();
   const int x = static_cast<int>(std::floor(corner.x() / fine_.cell_mm + kTolerance));
@@ -63,7 +63,7 @@ Standing SolidMaker::standing(int part, const Pose& pose) const {
   return {part, std::make_shared<const Attitude>(attitude), x, y, z};
 }
 
-Pose SolidMaker::pose(const Standing& standing) const {
+Pose SolidMaker::pose(const StandingPart& standing) const {
   Pose pose = Pose::Identity();
   pose.linear() = standing.attitude->rotation;
   pose.translation() =

@@ -20,7 +20,7 @@ struct Attitude {
   Vec3 shift = Vec3::Zero();
 };
 
-struct Standing {
+struct StandingPart {
   int part = 0;
   std::shared_ptr<const Attitude> attitude;
   int x = 0;  // fine cells
@@ -39,8 +39,8 @@ class SolidMaker {
   std::shared_ptr<const Attitude> attitude(int part, const Mat3& rotation);
   // The part as it stands: the answer's attitude and place give this pose to the last bit but for
   // z, which is in whole units.
-  Standing standing(int part, const Pose& pose) const;
-  Pose pose(const Standing& standing) const;
+  StandingPart standing(int part, const Pose& pose) const;
+  Pose pose(const StandingPart& standing) const;
 
   // Fine cells in a coarse one along each axis.
   int ratio() const { return ratio_; }
