@@ -152,6 +152,7 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
   problem.support_angle = radians(profile.support_angle_deg);
   problem.search_grid_mm = profile.pack.search_grid_mm;
   problem.cost = packing_cost(profile);
+  problem.anywhere = profile.pack.placement == Placement::kAnywhere;
   problem.tabu_memory = profile.pack.tabu_memory;
   problem.tabu_patience = profile.pack.tabu_patience;
   problem.tabu_samples = profile.pack.tabu_samples;

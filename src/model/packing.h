@@ -39,18 +39,21 @@ struct PackProblem {
   // Each the items round one cavity. Merging never makes a part that holds all of one: it would
   // shut the cavity again, and nobody could take support out of it.
   std::vector<std::vector<int>> enclosures;
-  Vec3 build_mm = Vec3::Zero();     // the tray, origin front left, z = 0 the plate
-  double gap_mm = 1;                // least Euclidean distance between two parts
-  double grid_mm = 1;               // cell of the height field in the answer
-  double rotation_step = 0;         // radians, about each of the three axes
-  double support_angle = 0;         // radians below the horizontal; 0: every down-facing facet
-  double search_grid_mm = 2;        // cell of the height field while layouts are searched
+  Vec3 build_mm = Vec3::Zero();  // the tray, origin front left, z = 0 the plate
+  double gap_mm = 1;             // least Euclidean distance between two parts
+  double grid_mm = 1;            // cell of the height field in the answer
+  double rotation_step = 0;      // radians, about each of the three axes
+  double support_angle = 0;      // radians below the horizontal; 0: every down-facing facet
+  double search_grid_mm = 2;     // cell of the height field while layouts are searched
   Cost cost;
   int tabu_memory = 3;     // m: rounds a move stays forbidden
   int tabu_patience = 10;  // rounds without a better layout before the search starts afresh
   int tabu_restarts = 2;   // without a better layout before the search ends
   int tabu_samples = 8;    // moves tried in one round
-  double budget_s = 0;     // 0: until the search ends by itself
+  // After the search, parts are taken out and put back wherever they fit, in cavities and under
+  // overhangs too, with a proven way out. Takes long where parts are large.
+  bool anywhere = false;
+  double budget_s = 0;  // 0: until the search ends by itself
   std::uint64_t seed = 1;
 };
 
@@ -64,8 +67,8 @@ struct PlacedPart {
 struct Packing {
   std::vector<PlacedPart> parts;   // in the order they were placed: bottom first on each tray
   std::vector<int> removal_order;  // indices into parts, first out first
-  // By part: translations, mm, in tray coordinates, that come before it is lifted straight up; empty
-  // for parts that are lifted at once.
+  // By part: translations, mm, in tray coordinates, that come before it is lifted straight up;
+  // empty for parts that are lifted at once.
   std::vector<std::vector<Vec3>> removal_paths;
   std::vector<TrayMeasure> trays;
   double cost = 0;  // sum over the trays of Cost::evaluate

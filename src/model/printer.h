@@ -17,6 +17,7 @@ namespace packmerger {
 enum class Technology { kPolyjet, kFdm };
 enum class Dialect { kHandoff, kGcode, kS3g };       // what the printer is given
 enum class Objective { kPaper, kPrinter, kHeight };  // what the packer minimises
+enum class Placement { kDrop, kAnywhere };           // how parts come to their places
 enum class Segmentation { kPaper, kPrinter };        // how the shell is divided
 enum class Origin { kFrontLeft, kCenter };           // of the machine's own coordinates
 enum class FdmTime { kDeposition, kToolpath };       // which FDM estimator fits the machine
@@ -45,6 +46,7 @@ struct PackSettings {
   double grid_mm = 1;
   double rotation_step_deg = 30;
   Objective objective = Objective::kPrinter;
+  Placement placement = Placement::kDrop;
   double weight = 0.75;  // w of equation (1)
   int tabu_memory = 3;
   int tabu_patience = 10;

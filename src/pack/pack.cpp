@@ -260,7 +260,7 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   Pace pace(progress, problem.budget_s);
   Workshop searching(problem, search_grid(problem), pace);
   make_items(problem, searching.maker);
-  pace.set_share(kDroppingShare);
+  pace.set_share(problem.anywhere ? kDroppingShare : 1);
   std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
   pace.set_share(kInTime);
   layouts.push_back(side_by_side(problem, searching));
@@ -280,7 +280,7 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
       chosen = i;
   Packing best = with_gaps_kept(layouts[chosen], searching.spec.grid, std::move(packings[chosen]),
                                 problem, pace);
-  best = put_under(problem, std::move(best), searching.maker, pace);
+  if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;
 }

@@ -18,8 +18,6 @@ constexpr std::size_t kRotationsTried = 24;
 constexpr std::size_t kBetterWays = 8;  // by what the part costs alone: tried half of the time
 constexpr std::size_t kMostTakenOut = 3;
 constexpr std::size_t kShakeOneIn = 8;  // tries
-// Cells of an average part times cells of the tray's contents: beyond, one try takes seconds.
-constexpr double kMostWork = 1e7;
 
 bool better(const Arranged& a, const Arranged& b) {
   return std::tie(a.cost, a.unrest) < std::tie(b.cost, b.unrest);
@@ -153,21 +151,6 @@ class Rearranger {
   Pace& pace_;
 };
 
-bool is_small_enough(const std::vector<StandingPart>& parts, SolidMaker& solids,
-                     const SolidGrid& fine) {
-  Box3 contents;
-  double cells = 0;
-  for (const StandingPart& one : parts) {
-    const auto drawing = solids.coarse(one.part, one.attitude, 0, 0);
-    const Vec3 at(one.x * fine.cell_mm, one.y * fine.cell_mm, one.z * fine.unit_mm);
-    contents.extend(Vec3(drawing->box.min() + at));
-    contents.extend(Vec3(drawing->box.max() + at));
-    cells += static_cast<double>(drawing->centres.size()) / static_cast<double>(parts.size());
-  }
-  const double coarse_mm = fine.cell_mm * solids.ratio();
-  return cells * contents.sizes().head<2>().prod() / (coarse_mm * coarse_mm) <= kMostWork;
-}
-
 SolidGrid solid_grid(const PackProblem& problem, double cell_mm, bool bounds) {
   return {problem.build_mm,      cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm,
           problem.support_angle, bounds};
@@ -199,8 +182,7 @@ std::optional<Packing> rearranged(const PackProblem& problem, Packing packing, d
     for (std::size_t i = 0; i < packing.parts.size(); ++i)
       if (packing.parts[i].tray == tray)
         standing.push_back(solids.standing(static_cast<int>(i), packing.parts[i].pose));
-    if (standing.size() > 1 && is_small_enough(standing, solids, fine))
-      standing = rearranger.run(std::move(standing), random.bits());
+    if (standing.size() > 1) standing = rearranger.run(std::move(standing), random.bits());
     std::vector<std::shared_ptr<const SolidPart>> drawings;
     std::vector<SolidPlace> places;
     for (const StandingPart& one : standing) {

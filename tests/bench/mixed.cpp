@@ -106,6 +106,7 @@ PackProblem mixed_problem(std::uint64_t seed) {
   }
   problem.build_mm = Vec3(100, 100, 150);
   problem.gap_mm = 0;
+  problem.anywhere = true;
   problem.grid_mm = 1;
   problem.search_grid_mm = 2;
   problem.rotation_step = radians(90);

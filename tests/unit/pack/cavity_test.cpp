@@ -218,6 +218,7 @@ TEST(RemovalPlan, NoneWhereAPartIsShutIn) {
 PackProblem standing_problem(std::vector<Mesh> meshes, const Vec3& build_mm) {
   PackProblem problem = shapes::problem_of(std::move(meshes), build_mm);
   problem.rotation_step = 0;
+  problem.anywhere = true;
   problem.cost = shapes::paper_cost(1);
   return problem;
 }
