@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <ranges>
 #include <set>
 
 #include "base/parallel.h"
@@ -51,8 +50,7 @@ FitTest::FitTest(const BuildVolume& build) : build_mm_(build.build_mm) {
   rotations_.assign(different.begin(), different.end());
 }
 
-template <typename Points>
-FitTest::Extents FitTest::extents_of(const Points& points) const {
+FitTest::Extents FitTest::extents_of(const std::vector<Vec3>& points) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Extents extents;
   extents.low.assign(axes_.size(), kInfinity);
@@ -79,8 +77,10 @@ std::vector<FitTest::Extents> FitTest::extents(const TetMesh& mesh,
     std::vector<int>& list = points[label];
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    result[label] = extents_of(
-        list | std::views::transform([&](int point) -> const Vec3& { return mesh.points[point]; }));
+    std::vector<Vec3> places;
+    places.reserve(list.size());
+    for (const int point : list) places.push_back(mesh.points[point]);
+    result[label] = extents_of(places);
   });
   return result;
 }

@@ -33,8 +33,7 @@ class FitTest {
   static void unite(Extents& into, const Extents& from);
 
  private:
-  template <typename Points>
-  Extents extents_of(const Points& points) const;
+  Extents extents_of(const std::vector<Vec3>& points) const;
 
   Vec3 build_mm_;
   std::vector<Vec3> axes_;                     // without opposites
