@@ -26,9 +26,7 @@ Box3 box_of(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation) {
 
 SolidMaker::SolidMaker(const PackProblem& problem, const std::vector<std::vector<int>>& parts,
                        const SolidGrid& coarse, const SolidGrid& fine)
-    : problem_(problem),
-      parts_(parts),
-      coarse_(coarse),
+    : coarse_(coarse),
       fine_(fine),
       ratio_(static_cast<int>(std::lround(coarse.cell_mm / fine.cell_mm))) {
   for (const std::vector<int>& items : parts) {

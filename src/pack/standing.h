@@ -32,7 +32,7 @@ struct StandingPart {
 class SolidMaker {
  public:
   // parts: the items of each. fine.cell_mm is the coarse cell's over a whole number.
-  // Everything must outlive the maker.
+  // The grids must outlive the maker.
   SolidMaker(const PackProblem& problem, const std::vector<std::vector<int>>& parts,
              const SolidGrid& coarse, const SolidGrid& fine);
 
@@ -57,8 +57,6 @@ class SolidMaker {
 
   std::shared_ptr<const SolidPart> drawn(int part, const std::shared_ptr<const Attitude>& attitude,
                                          const Key& key, const SolidGrid& grid, const Vec3& moved);
-  const PackProblem& problem_;
-  const std::vector<std::vector<int>>& parts_;
   const SolidGrid& coarse_;
   const SolidGrid& fine_;
   int ratio_;
