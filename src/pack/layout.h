@@ -43,8 +43,8 @@ struct Layout {
 struct Task {
   const Part* part = nullptr;
   const RotatedPart* rotated = nullptr;  // nullptr: freely
-  Range x = kAnywhere;                   // the window, cells
-  Range y = kAnywhere;
+  Range x = kAllCells;                   // the window, cells
+  Range y = kAllCells;
 };
 
 // What to put where, in this order.

@@ -77,7 +77,7 @@ std::vector<std::pair<const Part*, const Part*>> neighbours(const Layout& layout
 
 // From here on in the order, parts keep their rotations and look for new places.
 void look_again(std::vector<Task>& tasks, std::size_t first) {
-  for (std::size_t i = first; i < tasks.size(); ++i) tasks[i].x = tasks[i].y = kAnywhere;
+  for (std::size_t i = first; i < tasks.size(); ++i) tasks[i].x = tasks[i].y = kAllCells;
 }
 
 }  // namespace

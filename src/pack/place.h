@@ -18,14 +18,14 @@ struct Range {
   int count() const { return last - first + 1; }
 };
 
-inline constexpr Range kAnywhere{std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
+inline constexpr Range kAllCells{std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
 
 Range intersection(const Range& a, const Range& b);
 
 struct PlaceRules {
   bool on_plate_only = false;  // every part stands on the plate
-  Range x = kAnywhere;         // looked at
-  Range y = kAnywhere;
+  Range x = kAllCells;         // looked at
+  Range y = kAllCells;
 };
 
 struct Spot {

@@ -23,8 +23,8 @@ struct SolidSpot {
 };
 
 struct SolidRules {
-  Range x = kAnywhere;  // looked at
-  Range y = kAnywhere;
+  Range x = kAllCells;  // looked at
+  Range y = kAllCells;
   double give_up_above = std::numeric_limits<double>::infinity();  // cost
   std::size_t most = 1;  // places below something that are told, beside the best open one
 };

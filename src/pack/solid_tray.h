@@ -23,8 +23,8 @@ struct SolidPlace {
 
 // Cells of a tray that are looked at.
 struct CellWindow {
-  Range x = kAnywhere;
-  Range y = kAnywhere;
+  Range x = kAllCells;
+  Range y = kAllCells;
 };
 
 // Heights of a part's origin at which it meets nothing, units; both ends are free too.
