@@ -107,7 +107,7 @@ Divided choose_division(const Mesh& surface, const Profile& profile, bool hollow
         [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); });
   }
   warnings.insert(warnings.end(), best->warnings.begin(), best->warnings.end());
-  return *best->model;
+  return std::move(*best->model);
 }
 
 }  // namespace packmerger

@@ -8,7 +8,6 @@ namespace packmerger {
 
 using Height = std::int16_t;
 
-inline constexpr Height kNothing = -32768;  // no matter in this cell
 // The plate as parts' lower sides meet it: no part needs a gap to it, so it never decides a height.
 inline constexpr Height kBarePlate = -16384;
 
@@ -20,9 +19,5 @@ struct HeightCell {
 
   bool operator==(const HeightCell&) const = default;
 };
-
-// Length of a unit, mm, for a build volume of this height: 1/64, or more where the sum of two
-// heights would not fit 16 bits.
-double height_unit_mm(double build_z_mm);
 
 }  // namespace packmerger

@@ -168,21 +168,35 @@ Layout side_by_side(const PackProblem& problem, Workshop& workshop) {
   return *workshop.layouter.carried_out(moves.start(true, unused), best_alone, kInfinity, true);
 }
 
-// What the search found on its grid, taken over to the answer's grid and to the finest.
-Packing finished(const PackProblem& problem, const Layout& found, const Grid& grid,
-                 double margin_mm, Pace& pace) {
-  Workshop placing(problem, grid_of(problem, problem.grid_mm, true, margin_mm), pace);
-  Layout layout = refined(found, grid, placing.layouter, placing.maker, grid.cell_mm);
-  Workshop finest(problem, grid_of(problem, finest_cell_mm(problem), true, margin_mm), pace);
-  layout = refined(layout, placing.spec.grid, finest.layouter, finest.maker, problem.grid_mm);
-  for (int pass = 1; pass < kFinestPasses; ++pass) {
-    Layout again =
-        refined(layout, finest.spec.grid, finest.layouter, finest.maker, problem.grid_mm / 2);
-    if (again.cost >= layout.cost) break;
-    layout = std::move(again);
+// Takes what the search found on its grid over to the answer's grid and to the finest. Layouts that
+// are finished one after the other share what was drawn for them.
+class Finisher {
+ public:
+  // margin_mm is added to the gap. All must outlive it.
+  Finisher(const PackProblem& problem, const Grid& found_on, double margin_mm, Pace& pace)
+      : problem_(problem),
+        found_on_(found_on),
+        placing_(problem, grid_of(problem, problem.grid_mm, true, margin_mm), pace),
+        finest_(problem, grid_of(problem, finest_cell_mm(problem), true, margin_mm), pace) {}
+
+  Packing finished(const Layout& found) {
+    Layout layout = refined(found, found_on_, placing_.layouter, placing_.maker, found_on_.cell_mm);
+    layout = refined(layout, placing_.spec.grid, finest_.layouter, finest_.maker, problem_.grid_mm);
+    for (int pass = 1; pass < kFinestPasses; ++pass) {
+      Layout again =
+          refined(layout, finest_.spec.grid, finest_.layouter, finest_.maker, problem_.grid_mm / 2);
+      if (again.cost >= layout.cost) break;
+      layout = std::move(again);
+    }
+    return packing_of(layout, finest_.maker, problem_);
   }
-  return packing_of(layout, finest.maker, problem);
-}
+
+ private:
+  const PackProblem& problem_;
+  const Grid& found_on_;
+  Workshop placing_;
+  Workshop finest_;
+};
 
 double least_gap_mm(const Packing& packing, const PackProblem& problem) {
   double least = problem.gap_mm + 1;
@@ -204,7 +218,7 @@ Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
     const double missing = problem.gap_mm - least_gap_mm(packing, problem);
     if (missing <= kGapTolerance_mm) return packing;
     margin += 1.5 * missing + 0.01;
-    packing = finished(problem, layout, grid, margin, pace);
+    packing = Finisher(problem, grid, margin, pace).finished(layout);
   }
   throw Error(Fault::kInternal,
               fmt::format("The parts could not be kept {} mm apart", problem.gap_mm),
@@ -244,7 +258,7 @@ void make_items(const PackProblem& problem, PartMaker& maker) {
 
 double trial_cost(const PackProblem& problem, const Progress& progress) {
   check_settings(problem);
-  const Progress silent([](std::string_view, double) {}, progress.cancelled());
+  const Progress silent({}, progress.cancelled());
   Pace pace(silent, 0);
   PackProblem trial = problem;
   trial.rotation_step = std::max(problem.rotation_step, kTrialRotation);
@@ -265,9 +279,10 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   pace.set_share(kInTime);
   layouts.push_back(side_by_side(problem, searching));
 
+  Finisher finisher(problem, searching.spec.grid, 0, pace);
   std::vector<Packing> packings(layouts.size());
   for (std::size_t i = 0; i < layouts.size(); ++i) {
-    packings[i] = finished(problem, layouts[i], searching.spec.grid, 0, pace);
+    packings[i] = finisher.finished(layouts[i]);
     pace.reached(0.8 + 0.15 * static_cast<double>(i + 1) / static_cast<double>(layouts.size()));
   }
   const auto cheapest =

@@ -21,13 +21,6 @@ constexpr std::size_t kRefinedWays = 2;
 constexpr double kRefineFrom = 0.2;  // radians
 constexpr double kRefineTo = 0.01;
 
-std::array<std::int64_t, 9> key_of(const Mat3& rotation) {
-  std::array<std::int64_t, 9> key{};
-  for (int i = 0; i < 9; ++i)
-    key[static_cast<std::size_t>(i)] = std::llround(rotation(i / 3, i % 3) * 1e9);
-  return key;
-}
-
 // An angle as whole quarters and a rest in [0, quarter), rounded so that equal turns reached in
 // different ways share their maps.
 struct QuartersAndRest {
@@ -102,9 +95,9 @@ std::vector<TriangleSoup> PartMaker::surfaces(const ItemSet& items) const {
   return result;
 }
 
-std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation, bool keep) {
+std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation) {
   const std::pair key(twin, key_of(rotation));
-  if (keep) {
+  if (!grid_.bounds) {
     const std::lock_guard lock(mutex_);
     const auto found = maps_.find(key);
     if (found != maps_.end()) return found->second;
@@ -113,16 +106,16 @@ std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation,
   auto drawn = std::make_shared<const DepthMaps>(
       grid_.bounds ? draw_depth_maps(surface, grid_.cell_mm, problem_.support_angle)
                    : draw_sampled_maps(surface, grid_.cell_mm, problem_.support_angle));
-  if (!keep) return drawn;
+  if (grid_.bounds) return drawn;
   const std::lock_guard lock(mutex_);
   return maps_.emplace(key, std::move(drawn)).first->second;
 }
 
-DepthMaps PartMaker::part_maps(const ItemSet& items, const Mat3& rotation, bool keep) {
+DepthMaps PartMaker::part_maps(const ItemSet& items, const Mat3& rotation) {
   std::vector<std::shared_ptr<const DepthMaps>> held;
   std::vector<const DepthMaps*> members;
   for (const int item : items) {
-    held.push_back(maps(shapes_[static_cast<std::size_t>(item)].twin, rotation, keep));
+    held.push_back(maps(shapes_[static_cast<std::size_t>(item)].twin, rotation));
     members.push_back(held.back().get());
   }
   return united_maps(members);
@@ -248,7 +241,7 @@ const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& base, int qu
     if (found != rotated_.end()) return usable(found->second);
   }
   tick_();
-  const DepthMaps maps = quarter_turned(part_maps(part.items, base, !grid_.bounds), quarters);
+  const DepthMaps maps = quarter_turned(part_maps(part.items, base), quarters);
   auto made = std::make_unique<RotatedPart>();
   if (fits(maps.box.sizes(), problem_.build_mm)) {
     *made = quantised(maps, grid_);

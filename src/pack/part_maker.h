@@ -45,8 +45,6 @@ class PartMaker {
   // where the maps do not tell it. nullptr as above.
   const RotatedPart* rotated(const Part& part, const Mat3& rotation, double inside_support_mm3);
 
-  const Grid& grid() const { return grid_; }
-
   // Pose of a part at a position, model → tray.
   Pose pose(const RotatedPart& rotated, int x, int y, Height z) const;
 
@@ -55,12 +53,13 @@ class PartMaker {
     TriangleSoup surface;
     int twin = 0;  // the first item with the same shape
   };
-  using RotationKey = std::array<std::int64_t, 9>;
 
   const RotatedPart* rotated(const Part& part, const Mat3& base, int quarters,
                              double inside_support_mm3);
-  DepthMaps part_maps(const ItemSet& items, const Mat3& rotation, bool keep);
-  std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation, bool keep);
+  DepthMaps part_maps(const ItemSet& items, const Mat3& rotation);
+  // Kept while samples are searched: merged parts ask for their members' again. Bounds are drawn
+  // for one layout, and fine ones are large.
+  std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation);
   std::vector<WayUp> ways_of(const Part& part);
   void add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add);
   WayUp measured(const Part& part, const std::vector<TriangleSoup>& shapes, const Mat3& base,

@@ -12,20 +12,17 @@
 namespace packmerger {
 namespace {
 
-constexpr double kTolerance_mm = 1e-9;
 constexpr double kRounding = 1e-12;  // of a cost: bounds and costs may round differently
 
 // One part in one rotation over one tray: what its positions cost.
 class Rating {
  public:
   Rating(const TrayState& tray, const RotatedPart& part, double volume_mm3, const TraySpec& spec)
-      : part_(part), spec_(spec), empty_(tray.parts == 0) {
+      : part_(part), spec_(spec), contents_(tray.contents) {
     before_ = tray.measure();
     before_.support_mm3 += part.inside_support_mm3;
     before_.material_mm3 += volume_mm3;
     before_.parts += 1;
-    low_ = tray.contents.min();
-    high_ = tray.contents.max();
   }
 
   // waste: units, summed over the cells.
@@ -47,25 +44,11 @@ class Rating {
     return static_cast<std::int64_t>(part_.hang.size()) * z + part_.hang_sum - horizon;
   }
 
-  // The position in a range at which the contents grow least along an axis: there or one before.
-  int least_growth(const Range& range, int axis) const {
-    if (empty_) return range.first;
-    const double at = (low_[axis] - part_.box.min()[axis]) / spec_.grid.cell_mm;
-    return std::clamp(static_cast<int>(std::ceil(std::clamp(at, -1e6, 1e6))), range.first,
-                      range.last);
-  }
-
  private:
   TrayMeasure measure(int x, int y, Height z, std::int64_t waste) const {
     const Vec3 at(x * spec_.grid.cell_mm, y * spec_.grid.cell_mm, z * spec_.grid.unit_mm);
-    Vec3 low = part_.box.min() + at;
-    Vec3 high = part_.box.max() + at;
-    if (!empty_) {
-      low = low.cwiseMin(low_);
-      high = high.cwiseMax(high_);
-    }
     TrayMeasure measure = before_;
-    measure.size_mm = Vec3(high.x() - low.x(), high.y() - low.y(), high.z());
+    measure.size_mm = size_with(contents_, part_.box, at);
     measure.support_mm3 += waste_mm3(waste);
     return measure;
   }
@@ -73,9 +56,7 @@ class Rating {
   const RotatedPart& part_;
   const TraySpec& spec_;
   TrayMeasure before_;
-  Vec3 low_;
-  Vec3 high_;
-  bool empty_;
+  const Box3& contents_;
 };
 
 auto rank(const Spot& spot) { return std::tuple(spot.cost, spot.z, spot.y, spot.x, spot.rotation); }
@@ -122,12 +103,12 @@ class Scan {
         rotation_(rotation),
         spec_(spec),
         rating_(tray, part, volume_mm3, spec),
-        xs_(intersection(intersection(inside_tray(part, spec, 0), reachable(0)), rules.x)),
-        ys_(intersection(intersection(inside_tray(part, spec, 1), reachable(1)), rules.y)),
+        xs_(positions(0, rules.x)),
+        ys_(positions(1, rules.y)),
         highest_(rules.on_plate_only ? 0 : spec.ceiling() - part.rise) {
     if (!possible()) return;
-    const int y = rating_.least_growth(ys_, 1);
-    least_x_ = rating_.least_growth(xs_, 0);
+    const int y = least_growth(ys_, tray.contents, part.box, spec.grid.cell_mm, 1);
+    least_x_ = least_growth(xs_, tray.contents, part.box, spec.grid.cell_mm, 0);
     bound_ =
         std::min(least_bound(xs_, y, 0, 0), least_bound(xs_, std::max(y - 1, ys_.first), 0, 0));
   }
@@ -148,12 +129,12 @@ class Scan {
   }
 
  private:
-  // Up to the first position beside all contents: from there on the part stands on the bare plate,
-  // costs no less and loses every tie.
-  Range reachable(int axis) const {
-    if (tray_.parts == 0) return {0, 0};
-    const double end = tray_.contents.max()[axis] / spec_.grid.cell_mm;
-    return {0, static_cast<int>(std::ceil(end)) + spec_.growth()};
+  Range positions(int axis, const Range& asked) const {
+    const double cell_mm = spec_.grid.cell_mm;
+    const Range inside = inside_tray(part_.box, spec_.build_mm, cell_mm, axis);
+    return intersection(
+        intersection(inside, up_to_bare_plate(tray_.contents, cell_mm, spec_.grid.growth(), axis)),
+        asked);
   }
 
   // The bound at the best of these columns, in row y.
@@ -250,15 +231,6 @@ class Scan {
 };
 
 }  // namespace
-
-Range intersection(const Range& a, const Range& b) {
-  return {std::max(a.first, b.first), std::min(a.last, b.last)};
-}
-
-Range inside_tray(const RotatedPart& part, const TraySpec& spec, int axis) {
-  const double room = spec.build_mm[axis] - part.box.max()[axis] + kTolerance_mm;
-  return {0, static_cast<int>(std::floor(room / spec.grid.cell_mm))};
-}
 
 std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart* const> rotations,
                               double volume_mm3, const TraySpec& spec, const PlaceRules& rules) {

@@ -2,25 +2,12 @@
 // of a tray when it is dropped on what is there.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 
 #include "pack/tray_state.h"
 
 namespace packmerger {
-
-// Positions along one axis, cells.
-struct Range {
-  int first = 0;
-  int last = -1;
-  bool empty() const { return last < first; }
-  int count() const { return last - first + 1; }
-};
-
-inline constexpr Range kAllCells{std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
-
-Range intersection(const Range& a, const Range& b);
 
 struct PlaceRules {
   bool on_plate_only = false;  // every part stands on the plate
@@ -36,9 +23,6 @@ struct Spot {
   double cost = 0;         // Cost::evaluate of the tray with the part on it
   double support_mm3 = 0;  // what the part adds
 };
-
-// Positions at which the part lies within the tray, along axis 0 or 1.
-Range inside_tray(const RotatedPart& part, const TraySpec& spec, int axis);
 
 // The cheapest of all positions in all rotations. Of equal costs the lowest z wins, then the least
 // y, x and rotation, so the answer is always the same one. What is skipped is skipped for a proven

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "base/parallel.h"
 
@@ -18,15 +19,16 @@ Range window(int cell, double shift_from_mm, double shift_to_mm, double from_cel
   return {static_cast<int>(std::lround(at - reach)), static_cast<int>(std::lround(at + reach))};
 }
 
-Draft drafted(const Layout& layout, const Grid& from, const Grid& to, PartMaker& maker,
+using Rotations = std::map<const Part*, const RotatedPart*>;
+
+Draft drafted(const Layout& layout, const Grid& from, const Grid& to, const Rotations& rotations,
               double reach_mm) {
   Draft draft;
   for (const auto& tray : layout.trays) {
     Draft::Tray wanted;
     for (const Placed& placed : tray->placed) {
       const RotatedPart* was = placed.rotated;
-      const RotatedPart* now =
-          was ? maker.rotated(*placed.part, was->rotation, was->inside_support_mm3) : nullptr;
+      const RotatedPart* now = rotations.at(placed.part);
       if (!now) {
         wanted.tasks.push_back({placed.part});
         continue;
@@ -45,23 +47,22 @@ Draft drafted(const Layout& layout, const Grid& from, const Grid& to, PartMaker&
 
 Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartMaker& maker,
                double reach_mm) {
-  std::map<const Part*, const RotatedPart*> rotation_of;
+  Rotations rotations;  // nullptr where the part stands off the grid, or no longer fits
   for (const auto& tray : layout.trays)
     for (const Placed& placed : tray->placed)
-      if (placed.rotated)
-        rotation_of[placed.part] = maker.rotated(*placed.part, placed.rotated->rotation,
-                                                 placed.rotated->inside_support_mm3);
+      rotations[placed.part] = placed.rotated
+                                   ? maker.rotated(*placed.part, placed.rotated->rotation,
+                                                   placed.rotated->inside_support_mm3)
+                                   : nullptr;
   const RotationChoice the_same = [&](const Part& part) {
-    const auto found = rotation_of.find(&part);
-    return found == rotation_of.end() || found->second == nullptr
-               ? std::vector<const RotatedPart*>{}
-               : std::vector{found->second};
+    const RotatedPart* rotated = rotations.at(&part);
+    return rotated ? std::vector{rotated} : std::vector<const RotatedPart*>{};
   };
   const std::array<double, 2> reaches{0, reach_mm};
   std::array<Layout, 2> layouts;
   parallel_for(reaches.size(), [&](std::size_t i) {
-    layouts[i] = *to.carried_out(drafted(layout, from, to.spec().grid, maker, reaches[i]), the_same,
-                                 std::numeric_limits<double>::infinity());
+    layouts[i] = *to.carried_out(drafted(layout, from, to.spec().grid, rotations, reaches[i]),
+                                 the_same, std::numeric_limits<double>::infinity());
   });
   return layouts[1].cost < layouts[0].cost ? layouts[1] : layouts[0];
 }

@@ -10,8 +10,6 @@
 namespace packmerger {
 namespace {
 
-constexpr double kFinestUnit_mm = 1.0 / 64;
-constexpr double kMostUnits = 16000;   // sums of two stay in 16 bits
 constexpr float kSlack_units = 4e-3F;  // what single precision may lose of a height
 constexpr double kRounding_units = 1e-6;
 
@@ -21,12 +19,6 @@ Height rounded(float units) { return static_cast<Height>(std::lround(units)); }
 
 HeightCell cell(int x, int y, Height value) {
   return {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), value};
-}
-
-// Least horizontal distance between the points of two cells that lie `cells` apart on one axis, or
-// the distance of their centres.
-double apart(int cells, const Grid& grid) {
-  return (grid.bounds ? std::max(0, std::abs(cells) - 1) : std::abs(cells)) * grid.cell_mm;
 }
 
 // The lower side of the part grown by a ball of radius gap_mm, so that matter dropped on it keeps
@@ -40,7 +32,8 @@ std::vector<float> grown_low(const DepthMaps& maps, const Grid& grid, int growth
                            kNothingAbove);
   for (int dy = -growth; dy <= growth; ++dy)
     for (int dx = -growth; dx <= growth; ++dx) {
-      const double distance = std::hypot(apart(dx, grid), apart(dy, grid));
+      const double distance = std::hypot(apart_mm(dx, grid.cell_mm, grid.bounds),
+                                         apart_mm(dy, grid.cell_mm, grid.bounds));
       if ((dx != 0 || dy != 0) && distance >= grid.gap_mm) continue;
       const float further =
           static_cast<float>(std::sqrt(grid.gap_mm * grid.gap_mm - distance * distance)) * per_mm;
@@ -64,10 +57,6 @@ bool same_look(const RotatedPart& a, const RotatedPart& b) {
 }
 
 }  // namespace
-
-double height_unit_mm(double build_z_mm) {
-  return std::max(kFinestUnit_mm, build_z_mm / kMostUnits);
-}
 
 std::vector<HeightCell> decisive_first(const std::vector<HeightCell>& cells) {
   constexpr int kTile = 4;
@@ -93,9 +82,7 @@ std::vector<HeightCell> decisive_first(const std::vector<HeightCell>& cells) {
 
 RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
   RotatedPart part;
-  part.width = maps.width;
-  part.height = maps.height;
-  part.growth = static_cast<int>(std::ceil(grid.gap_mm / grid.cell_mm));
+  const int growth = grid.growth();
   const Vec3 corner(maps.x0 * grid.cell_mm, maps.y0 * grid.cell_mm, maps.box.min().z());
   const Vec3 low = ((maps.box.min() - corner) / grid.unit_mm).array() + kRounding_units;
   const Vec3 high = ((maps.box.max() - corner) / grid.unit_mm).array() - kRounding_units;
@@ -105,13 +92,13 @@ RotatedPart quantised(const DepthMaps& maps, const Grid& grid) {
 
   const float lowest = static_cast<float>(maps.box.min().z());
   const float per_mm = static_cast<float>(1 / grid.unit_mm);
-  const std::vector<float> grown = grown_low(maps, grid, part.growth, lowest);
+  const std::vector<float> grown = grown_low(maps, grid, growth, lowest);
   const float slack = grid.bounds ? kSlack_units : 0;
-  const int grown_width = maps.width + 2 * part.growth;
+  const int grown_width = maps.width + 2 * growth;
   for (std::size_t at = 0; at < grown.size(); ++at)
     if (grown[at] != kNothingAbove)
-      part.reach.push_back(cell(static_cast<int>(at) % grown_width - part.growth,
-                                static_cast<int>(at) / grown_width - part.growth,
+      part.reach.push_back(cell(static_cast<int>(at) % grown_width - growth,
+                                static_cast<int>(at) / grown_width - growth,
                                 rounded_down(grown[at] - slack)));
   part.reach = decisive_first(part.reach);
 

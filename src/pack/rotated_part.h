@@ -5,7 +5,7 @@
 
 #include "base/geometry.h"
 #include "pack/depth_map.h"
-#include "pack/heights.h"
+#include "pack/grid.h"
 
 namespace packmerger {
 
@@ -15,10 +15,7 @@ struct RotatedPart {
   Mat3 rotation = Mat3::Identity();
   Vec3 shift = Vec3::Zero();  // own frame = rotation * model coordinates + shift, mm
   Box3 box;                   // in the own frame, mm, rounded outwards to units; x, y in [0, grid)
-  int width = 0;              // cells
-  int height = 0;
-  int growth = 0;                 // cells by which `reach` may stand out on each side
-  Height rise = 0;                // height of the box, units
+  Height rise = 0;            // height of the box, units
   std::vector<HeightCell> reach;  // the lower side of matter, grown by the gap in every direction
   std::vector<HeightCell> top;    // its upper side
   std::vector<HeightCell> roof;   // the highest matter at the cell's centre
@@ -35,6 +32,8 @@ struct Grid {
   // wherever they are put. Or samples (draw_sampled_maps): a wall takes the room it takes on
   // average, so a search on coarse cells sees what a finer grid will make of its layout.
   bool bounds = true;
+
+  int growth() const { return growth_cells(gap_mm, cell_mm); }
 };
 
 // The cells in the order in which a fall (fall.h) should meet them: those first that decide most,

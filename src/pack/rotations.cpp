@@ -67,15 +67,17 @@ RotationSet rotation_set(double step) {
 }
 
 std::vector<Mat3> spread_ways(int count) {
-  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<Mat3> ways;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - (2 * i + 1.0) / count;
-    const double radius = std::sqrt(1 - z * z);
-    const Vec3 up(radius * std::cos(golden * i), radius * std::sin(golden * i), z);
+  for (const Vec3& up : spread_directions(count))
     ways.push_back(Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()).toRotationMatrix());
-  }
   return ways;
+}
+
+RotationKey key_of(const Mat3& rotation) {
+  RotationKey key{};
+  for (int i = 0; i < 9; ++i)
+    key[static_cast<std::size_t>(i)] = std::llround(rotation(i / 3, i % 3) * 1e9);
+  return key;
 }
 
 }  // namespace packmerger

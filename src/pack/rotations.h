@@ -2,6 +2,8 @@
 // repetitions, ordered as ways up and turns about the vertical.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "base/geometry.h"
@@ -19,8 +21,12 @@ struct RotationSet {
 // step: radians; 0 or less: the identity alone.
 RotationSet rotation_set(double step);
 
-// Ways up whose up directions are spread evenly over the sphere (a Fibonacci lattice).
+// Ways up whose up directions are spread evenly over the sphere.
 std::vector<Mat3> spread_ways(int count);
+
+// Equal for rotations that differ by rounding only.
+using RotationKey = std::array<std::int64_t, 9>;
+RotationKey key_of(const Mat3& rotation);
 
 // Exact at multiples of 90°, so that boxes stay boxes.
 Mat3 turn_about_z(double angle);

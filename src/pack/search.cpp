@@ -26,6 +26,14 @@ void lower(std::atomic<double>& least, double value) {
   }
 }
 
+// The first of the cheapest; empty where all were given up.
+std::optional<std::size_t> cheapest(const std::vector<std::optional<Layout>>& layouts) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < layouts.size(); ++i)
+    if (layouts[i] && (!best || layouts[i]->cost < layouts[*best]->cost)) best = i;
+  return best;
+}
+
 class TabuSearch {
  public:
   TabuSearch(const PackProblem& problem, const Layouter& layouter, PartMaker& maker, Pace& pace,
@@ -81,15 +89,11 @@ class TabuSearch {
     while (rounds_without_better < problem_.tabu_patience && !over()) {
       const std::vector<Move> moves = permitted(current, forbidden);
       std::vector<std::optional<Layout>> layouts = carried_out(moves);
-      std::size_t chosen = layouts.size();
-      for (std::size_t i = 0; i < layouts.size(); ++i)
-        if (layouts[i] && (chosen == layouts.size() || layouts[i]->cost < layouts[chosen]->cost))
-          chosen = i;
       ++rounds_without_better;
-      if (chosen == layouts.size()) continue;
-      if (layouts[chosen]->cost > kDetour * reached) continue;
-      current = std::move(*layouts[chosen]);
-      forbidden.push_back(moves[chosen].touched);
+      const std::optional<std::size_t> chosen = cheapest(layouts);
+      if (!chosen || layouts[*chosen]->cost > kDetour * reached) continue;
+      current = std::move(*layouts[*chosen]);
+      forbidden.push_back(moves[*chosen].touched);
       if (static_cast<int>(forbidden.size()) > problem_.tabu_memory) forbidden.pop_front();
       keep(current);
       if (current.cost < reached) {
@@ -151,12 +155,9 @@ class TabuSearch {
     Layout layout = best_;
     while (true) {
       std::vector<std::optional<Layout>> merged = carried_out(moves_.merges(layout, random_));
-      std::size_t chosen = merged.size();
-      for (std::size_t i = 0; i < merged.size(); ++i)
-        if (merged[i] && (chosen == merged.size() || merged[i]->cost < merged[chosen]->cost))
-          chosen = i;
-      if (chosen == merged.size() || merged[chosen]->cost > kWorthKeeping * best_.cost) break;
-      layout = std::move(*merged[chosen]);
+      const std::optional<std::size_t> chosen = cheapest(merged);
+      if (!chosen || merged[*chosen]->cost > kWorthKeeping * best_.cost) break;
+      layout = std::move(*merged[*chosen]);
       keep(layout);
       if (layout.cost < best_.cost) improve(layout);
     }

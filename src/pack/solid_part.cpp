@@ -213,20 +213,7 @@ Outline outline_of(const std::vector<SpanCell>& cells) {
   return outline;
 }
 
-int cells_in(double mm, double cell_mm) {
-  return std::max(1, static_cast<int>(std::ceil(mm / cell_mm - kCellTolerance)));
-}
-
 }  // namespace
-
-int SolidGrid::columns() const { return cells_in(build_mm.x(), cell_mm); }
-int SolidGrid::rows() const { return cells_in(build_mm.y(), cell_mm); }
-int SolidGrid::growth() const {
-  return gap_mm > 0 ? static_cast<int>(std::ceil(gap_mm / cell_mm)) : 0;
-}
-Height SolidGrid::ceiling() const {
-  return static_cast<Height>(std::floor(build_mm.z() / unit_mm + kRounding_units));
-}
 
 std::vector<SpanCell> grown(const std::vector<SpanCell>& cells, const SolidGrid& grid,
                             double radius_mm) {
@@ -239,12 +226,10 @@ std::vector<SpanCell> grown(const std::vector<SpanCell>& cells, const SolidGrid&
   const int width = right->x + growth - x0 + 1;
   const int height = cells.back().y + growth - y0 + 1;
   std::vector<std::vector<SpanCell>> columns(static_cast<std::size_t>(width * height));
-  const auto apart = [&](int count) {
-    return (grid.bounds ? std::max(0, std::abs(count) - 1) : std::abs(count)) * grid.cell_mm;
-  };
   for (int dy = -growth; dy <= growth; ++dy)
     for (int dx = -growth; dx <= growth; ++dx) {
-      const double distance = std::hypot(apart(dx), apart(dy));
+      const double distance = std::hypot(apart_mm(dx, grid.cell_mm, grid.bounds),
+                                         apart_mm(dy, grid.cell_mm, grid.bounds));
       if ((dx != 0 || dy != 0) && distance >= radius_mm) continue;
       const double reach = std::sqrt(radius_mm * radius_mm - distance * distance) / grid.unit_mm;
       const auto further = static_cast<Height>(grid.bounds ? std::ceil(reach) : std::round(reach));

@@ -6,7 +6,7 @@
 
 #include "base/geometry.h"
 #include "model/mesh.h"
-#include "pack/heights.h"
+#include "pack/grid.h"
 
 namespace packmerger {
 
@@ -30,10 +30,10 @@ struct SolidGrid {
   // tell a search on coarse cells what a finer grid will make of its layout.
   bool bounds = true;
 
-  int columns() const;
-  int rows() const;
-  int growth() const;      // cells by which `reach` may stand out of the matter on each side
-  Height ceiling() const;  // the build volume's height, units
+  int columns() const { return cells_along(build_mm.x(), cell_mm); }
+  int rows() const { return cells_along(build_mm.y(), cell_mm); }
+  int growth() const { return growth_cells(gap_mm, cell_mm); }
+  Height ceiling() const { return ceiling_units(build_mm.z(), unit_mm); }
 };
 
 // The lowest and the highest matter over each cell of a rectangle; low > top where there is none.

@@ -9,7 +9,6 @@
 namespace packmerger {
 namespace {
 
-constexpr double kTolerance_mm = 1e-9;
 constexpr int kSamePlace_cells = 4;
 constexpr int kLookEvery = 8;  // meetings, before asking whether all heights are taken
 
@@ -85,52 +84,36 @@ class Scan {
   }
 
   void run(const SolidRules& rules) {
-    const Range xs =
-        intersection(intersection(inside_tray(part_, tray_.grid(), 0), reachable(0)), rules.x);
-    const Range ys =
-        intersection(intersection(inside_tray(part_, tray_.grid(), 1), reachable(1)), rules.y);
+    const Range xs = positions(0, rules.x);
+    const Range ys = positions(1, rules.y);
     if (xs.empty() || ys.empty()) return;
-    least_x_ = least_growth(xs, 0);
-    least_y_ = least_growth(ys, 1);
+    least_x_ = least_growth(xs, tray_.contents(), part_.box, tray_.grid().cell_mm, 0);
+    least_y_ = least_growth(ys, tray_.contents(), part_.box, tray_.grid().cell_mm, 1);
     limit();
     for (int y = ys.first; y <= ys.last; ++y)
       for (int x = xs.first; x <= xs.last && highest_ >= 0; ++x) look_at(x, y);
   }
 
  private:
-  // Up to the first position beside all contents: from there on it costs no less.
-  Range reachable(int axis) const {
-    if (tray_.contents().isEmpty()) return {0, 0};
+  Range positions(int axis, const Range& asked) const {
     const SolidGrid& grid = tray_.grid();
-    const double end = tray_.contents().max()[axis] / grid.cell_mm;
-    return {0, static_cast<int>(std::ceil(end)) + grid.growth()};
+    const Range inside = inside_tray(part_.box, grid.build_mm, grid.cell_mm, axis);
+    return intersection(
+        intersection(inside, up_to_bare_plate(tray_.contents(), grid.cell_mm, grid.growth(), axis)),
+        asked);
   }
 
   TrayMeasure measure(int x, int y, int z, double support_mm3) const {
     const SolidGrid& grid = tray_.grid();
     const Vec3 at(x * grid.cell_mm, y * grid.cell_mm, z * grid.unit_mm);
-    Vec3 low = part_.box.min() + at;
-    Vec3 high = part_.box.max() + at;
-    if (!tray_.contents().isEmpty()) {
-      low = low.cwiseMin(tray_.contents().min());
-      high = high.cwiseMax(tray_.contents().max());
-    }
     TrayMeasure measure = after_;
-    measure.size_mm = Vec3(high.x() - low.x(), high.y() - low.y(), high.z());
+    measure.size_mm = size_with(tray_.contents(), part_.box, at);
     measure.support_mm3 = support_mm3;
     return measure;
   }
 
   bool worth_it(int x, int y, int z) const {
     return found_.wanted(cost_.lower_bound(measure(x, y, z, least_support_mm3_)), z + part_.rise);
-  }
-
-  // The position in a range at which the contents grow least along an axis.
-  int least_growth(const Range& range, int axis) const {
-    if (tray_.contents().isEmpty()) return range.first;
-    const double at = (tray_.contents().min()[axis] - part_.box.min()[axis]) / tray_.grid().cell_mm;
-    return std::clamp(static_cast<int>(std::ceil(std::clamp(at, -1e6, 1e6))), range.first,
-                      range.last);
   }
 
   // The highest z worth looking at anywhere, below 0 where none is: costs never fall with z.
@@ -201,13 +184,6 @@ class Scan {
 };
 
 }  // namespace
-
-Range inside_tray(const SolidPart& part, const SolidGrid& grid, int axis) {
-  const double before = -part.box.min()[axis] - kTolerance_mm;
-  const double room = grid.build_mm[axis] - part.box.max()[axis] + kTolerance_mm;
-  return {static_cast<int>(std::ceil(before / grid.cell_mm)),
-          static_cast<int>(std::floor(room / grid.cell_mm))};
-}
 
 std::vector<SolidSpot> solid_spots(const SolidTray& tray, const TrayMeasure& before,
                                    std::span<const SolidPart* const> rotations, double volume_mm3,

@@ -39,7 +39,4 @@ std::vector<SolidSpot> solid_spots(const SolidTray& tray, const TrayMeasure& bef
                                    std::span<const SolidPart* const> rotations, double volume_mm3,
                                    const Cost& cost, const SolidRules& rules);
 
-// Positions at which the part lies within the tray, along axis 0 or 1.
-Range inside_tray(const SolidPart& part, const SolidGrid& grid, int axis);
-
 }  // namespace packmerger

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "pack/place.h"
+#include "pack/grid.h"
 #include "pack/solid_part.h"
 
 namespace packmerger {

@@ -2,18 +2,13 @@
 
 #include <cmath>
 
+#include "pack/rotations.h"
+
 namespace packmerger {
 namespace {
 
 constexpr double kTolerance = 1e-7;  // of a cell, and of a unit
 constexpr std::size_t kMostSpans = 12'000'000;
-
-std::array<std::int64_t, 9> key_of(const Mat3& rotation) {
-  std::array<std::int64_t, 9> key{};
-  for (int i = 0; i < 9; ++i)
-    key[static_cast<std::size_t>(i)] = std::llround(rotation(i / 3, i % 3) * 1e9);
-  return key;
-}
 
 Box3 box_of(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation) {
   Box3 box;

@@ -1,17 +1,10 @@
 #include "pack/tray_state.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pack/fall.h"
 
 namespace packmerger {
-namespace {
-
-constexpr double kTolerance = 1e-7;  // of a cell
-
-}  // namespace
-
 HeightField::HeightField(int width, int height, int border, Height empty)
     : width_(width),
       height_(height),
@@ -21,23 +14,9 @@ HeightField::HeightField(int width, int height, int border, Height empty)
                   kFallReadAhead,
               empty) {}
 
-int TraySpec::columns() const {
-  return std::max(1, static_cast<int>(std::ceil(build_mm.x() / grid.cell_mm - kTolerance)));
-}
-
-int TraySpec::rows() const {
-  return std::max(1, static_cast<int>(std::ceil(build_mm.y() / grid.cell_mm - kTolerance)));
-}
-
-int TraySpec::growth() const { return static_cast<int>(std::ceil(grid.gap_mm / grid.cell_mm)); }
-
-Height TraySpec::ceiling() const {
-  return static_cast<Height>(std::floor(build_mm.z() / grid.unit_mm + 1e-6));
-}
-
 TrayState::TrayState(const TraySpec& spec)
-    : upper(spec.columns(), spec.rows(), spec.growth() + 1, kBarePlate),
-      surface(spec.columns(), spec.rows(), spec.growth() + 1, 0) {}
+    : upper(spec.columns(), spec.rows(), spec.grid.growth() + 1, kBarePlate),
+      surface(spec.columns(), spec.rows(), spec.grid.growth() + 1, 0) {}
 
 void TrayState::put(const RotatedPart& part, int x, int y, Height z, double added_mm3,
                     double volume_mm3, const TraySpec& spec) {

@@ -15,8 +15,6 @@ class HeightField {
  public:
   HeightField(int width, int height, int border, Height empty);
 
-  int width() const { return width_; }
-  int height() const { return height_; }
   std::ptrdiff_t stride() const { return stride_; }
   const Height* origin() const { return &values_[index(0, 0)]; }
   Height& at(int x, int y) { return values_[index(x, y)]; }
@@ -38,10 +36,9 @@ struct TraySpec {
   Grid grid;
   const Cost* cost = nullptr;
 
-  int columns() const;
-  int rows() const;
-  int growth() const;      // of every part's `reach`, cells
-  Height ceiling() const;  // highest z of matter, units
+  int columns() const { return cells_along(build_mm.x(), grid.cell_mm); }
+  int rows() const { return cells_along(build_mm.y(), grid.cell_mm); }
+  Height ceiling() const { return ceiling_units(build_mm.z(), grid.unit_mm); }
 };
 
 struct TrayState {

@@ -5,8 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "pack/solid_place.h"
-
 namespace packmerger {
 namespace {
 
@@ -33,8 +31,8 @@ class Flood {
     highest_ = rest.top() - reach_low;
     while ((highest_ >> shift_) + 1 >= TakenHeights::kCount) ++shift_;
     count_ = (highest_ >> shift_) + 2;
-    xs_ = inside_tray(*place.part, rest.grid(), 0);
-    ys_ = inside_tray(*place.part, rest.grid(), 1);
+    xs_ = inside_tray(place.part->box, rest.grid().build_mm, rest.grid().cell_mm, 0);
+    ys_ = inside_tray(place.part->box, rest.grid().build_mm, rest.grid().cell_mm, 1);
   }
 
   std::optional<std::vector<Vec3>> run() {

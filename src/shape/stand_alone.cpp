@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <Eigen/Eigenvalues>
 
@@ -20,17 +19,6 @@ constexpr double kCellSpacings = 1.6;  // a cell of the map, in spacings of the 
 constexpr double kExcess = 0.6;
 constexpr double kCapSpacings = 0.75;  // samples nearer to a cut are seen on it, too
 constexpr std::array<double, 2> kRefineBy{0.2, 0.08};  // radians
-
-std::vector<Vec3> regular_directions() {
-  std::vector<Vec3> found;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2.0 * i + 1) / kDirections;
-    const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    found.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
-  }
-  return found;
-}
 
 struct Frame {
   Vec3 x, y, up;
@@ -137,7 +125,7 @@ double steep_share(const MatterSamples& samples, const PieceShape& piece, double
 }
 
 std::vector<Vec3> directions_of(const MatterSamples& samples, const PieceShape& piece) {
-  static const std::vector<Vec3> regular = regular_directions();
+  static const std::vector<Vec3> regular = spread_directions(kDirections);
   std::vector<Vec3> directions = regular;
   Vec3 mean = Vec3::Zero();
   Mat3 moments = Mat3::Zero();

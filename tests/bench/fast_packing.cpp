@@ -14,9 +14,6 @@ RotatedPart laid_out_one(const ReferenceMaps& maps, double unit_mm) {
   RotatedPart part;
   part.rotation = maps.rotation;
   part.box = Box3(Vec3(0, 0, 0), Vec3(maps.box.sizes()));
-  part.width = maps.width;
-  part.height = maps.height;
-  part.growth = maps.growth;
   part.rise = static_cast<Height>(std::ceil(maps.box.sizes().z() / unit_mm - 1e-6));
   const int grown_width = maps.width + 2 * maps.growth;
   for (std::size_t at = 0; at < maps.reach.size(); ++at)
