@@ -6,9 +6,7 @@
 
 namespace packmerger {
 HeightField::HeightField(int width, int height, int border, Height empty)
-    : width_(width),
-      height_(height),
-      border_(border),
+    : border_(border),
       stride_(width + 2 * border),
       values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border) +
                   kFallReadAhead,

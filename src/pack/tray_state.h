@@ -23,8 +23,6 @@ class HeightField {
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>((y + border_) * stride_ + x + border_);
   }
-  int width_;
-  int height_;
   int border_;
   int stride_;
   std::vector<Height> values_;
