@@ -27,20 +27,11 @@ std::vector<SegmentEdge> adjacency(const TetMesh& mesh, const Segments& segments
 std::vector<std::vector<int>> segments_round_cavities(const TetMesh& mesh,
                                                       const Segments& segments) {
   const BoundarySurface surface = boundary_surface(mesh);
-  std::vector<char> seen(surface.faces.size(), 0);
   std::vector<std::vector<int>> enclosures;
-  for (std::size_t start = 0; start < surface.faces.size(); ++start) {
-    if (surface.faces[start].side != FaceSide::kCavity || seen[start]) continue;
+  for (const std::vector<int>& cavity : cavity_faces(surface)) {
     std::set<int> labels;
-    std::vector<std::size_t> open{start};
-    seen[start] = 1;
-    while (!open.empty()) {
-      const BoundarySurface::Face& face = surface.faces[open.back()];
-      open.pop_back();
-      labels.insert(segments.of_tetrahedron[face.tetrahedron]);
-      for (const int across : face.across)
-        if (!std::exchange(seen[across], 1)) open.push_back(static_cast<std::size_t>(across));
-    }
+    for (const int face : cavity)
+      labels.insert(segments.of_tetrahedron[surface.faces[face].tetrahedron]);
     enclosures.emplace_back(labels.begin(), labels.end());
   }
   return enclosures;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
 
@@ -40,6 +41,20 @@ BoundarySurface boundary_surface(const TetMesh& mesh) {
     surface.faces[sides[i + 1].face].across[sides[i + 1].edge] = sides[i].face;
   }
   return surface;
+}
+
+std::vector<std::vector<int>> cavity_faces(const BoundarySurface& surface) {
+  std::vector<std::vector<int>> cavities;
+  std::vector<char> seen(surface.faces.size(), 0);
+  for (int start = 0; start < static_cast<int>(surface.faces.size()); ++start) {
+    if (surface.faces[start].side != FaceSide::kCavity || std::exchange(seen[start], 1)) continue;
+    std::vector<int> found{start};
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (const int across : surface.faces[found[i]].across)
+        if (!std::exchange(seen[across], 1)) found.push_back(across);
+    cavities.push_back(std::move(found));
+  }
+  return cavities;
 }
 
 double face_area_mm2(const TetMesh& mesh, int tetrahedron, int face) {

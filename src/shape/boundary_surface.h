@@ -23,6 +23,9 @@ struct BoundarySurface {
 // Throws Error{kInternal} when an edge of the boundary has not exactly two faces.
 BoundarySurface boundary_surface(const TetMesh& mesh);
 
+// The faces of each hollowed cavity, as indices into surface.faces; cavities by their first face.
+std::vector<std::vector<int>> cavity_faces(const BoundarySurface& surface);
+
 double face_area_mm2(const TetMesh& mesh, int tetrahedron, int face);
 
 }  // namespace packmerger

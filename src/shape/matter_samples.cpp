@@ -119,23 +119,11 @@ void link(MatterSamples& samples, const std::vector<Cube>& cubes) {
 void find_cavities(MatterSamples& samples, const TetMesh& mesh, const Cubes& grid,
                    const std::vector<Cube>& cubes) {
   const BoundarySurface surface = boundary_surface(mesh);
-  std::vector<char> seen(surface.faces.size(), 0);
-  for (std::size_t start = 0; start < surface.faces.size(); ++start) {
-    if (surface.faces[start].side != FaceSide::kCavity || seen[start]) continue;
+  for (const std::vector<int>& cavity : cavity_faces(surface)) {
     std::vector<int> around;
-    std::vector<std::size_t> open{start};
-    seen[start] = 1;
-    while (!open.empty()) {
-      const BoundarySurface::Face& face = surface.faces[open.back()];
-      open.pop_back();
-      for (const int corner : face.corners)
+    for (const int face : cavity)
+      for (const int corner : surface.faces[face].corners)
         around.push_back(index_of(cubes, grid.of(mesh.points[corner])));
-      for (const int across : face.across) {
-        if (seen[across]) continue;
-        seen[across] = 1;
-        open.push_back(static_cast<std::size_t>(across));
-      }
-    }
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
     samples.round_cavities.push_back(std::move(around));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "shape/boundary_surface.h"
+#include "shape/adjacency.h"
 
 namespace packmerger {
 namespace {
@@ -176,18 +176,15 @@ void PlaneCutter::link() {
 
 Segments connected_segments(const TetMesh& mesh, const std::vector<int>& labels, double least_mm3) {
   Segments pieces{std::vector<int>(labels.size(), -1), 0};
-  std::vector<double> volumes;
   std::vector<int> open;
   for (int start = 0; start < mesh.count(); ++start) {
     if (pieces.of_tetrahedron[start] >= 0) continue;
     const int piece = pieces.count++;
-    double volume = 0;
     pieces.of_tetrahedron[start] = piece;
     open.assign(1, start);
     while (!open.empty()) {
       const int t = open.back();
       open.pop_back();
-      volume += mesh.volume_mm3(t);
       for (const int across : mesh.neighbours[t]) {
         if (across < 0 || pieces.of_tetrahedron[across] >= 0 || labels[across] != labels[t])
           continue;
@@ -195,17 +192,10 @@ Segments connected_segments(const TetMesh& mesh, const std::vector<int>& labels,
         open.push_back(across);
       }
     }
-    volumes.push_back(volume);
   }
 
-  std::map<std::pair<int, int>, double> shared_mm2;
-  for (int t = 0; t < mesh.count(); ++t)
-    for (int face = 0; face < 4; ++face) {
-      const int across = mesh.neighbours[t][face];
-      if (across < 0 || pieces.of_tetrahedron[across] == pieces.of_tetrahedron[t]) continue;
-      shared_mm2[{pieces.of_tetrahedron[t], pieces.of_tetrahedron[across]}] +=
-          face_area_mm2(mesh, t, face);
-    }
+  const std::vector<double> volumes = segment_volumes(mesh, pieces);
+  const std::vector<SegmentEdge> joints = adjacency(mesh, pieces);
   // Fragments follow their neighbours, which may be fragments themselves, to a piece that stays.
   std::vector<int> goes_to(pieces.count, -1);
   for (int piece = 0; piece < pieces.count; ++piece)
@@ -213,11 +203,13 @@ Segments connected_segments(const TetMesh& mesh, const std::vector<int>& labels,
   for (bool changed = true; changed;) {
     changed = false;
     std::map<int, std::pair<double, int>> best;  // by fragment: area, receiver
-    for (const auto& [pair, area] : shared_mm2) {
-      if (goes_to[pair.first] >= 0 || goes_to[pair.second] < 0) continue;
-      auto& choice = best.try_emplace(pair.first, 0, -1).first->second;
-      if (area > choice.first) choice = {area, goes_to[pair.second]};
-    }
+    for (const SegmentEdge& joint : joints)
+      for (const auto& [fragment, beside] :
+           {std::pair(joint.a, joint.b), std::pair(joint.b, joint.a)}) {
+        if (goes_to[fragment] >= 0 || goes_to[beside] < 0) continue;
+        auto& choice = best.try_emplace(fragment, 0, -1).first->second;
+        if (joint.area_mm2 > choice.first) choice = {joint.area_mm2, goes_to[beside]};
+      }
     for (const auto& [fragment, choice] : best) {
       if (choice.second < 0) continue;
       goes_to[fragment] = choice.second;
