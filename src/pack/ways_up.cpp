@@ -86,7 +86,7 @@ std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surf
   return FittingWay{best, size_turned(surfaces, best)};
 }
 
-std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces, std::size_t most) {
+std::vector<Vec3> flat_facets(const std::vector<TriangleSoup>& surfaces) {
   // Areas summed by direction, on a lattice fine enough that facets of one plane share a bin or lie
   // in neighbouring ones.
   std::map<std::array<long, 3>, Vec3> bins;  // area-weighted normals
@@ -110,6 +110,11 @@ std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces,
     if (area.norm() > kFlatShare * total) flats.push_back(area);
   std::stable_sort(flats.begin(), flats.end(),
                    [](const Vec3& a, const Vec3& b) { return a.norm() > b.norm(); });
+  return flats;
+}
+
+std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces, std::size_t most) {
+  const std::vector<Vec3> flats = flat_facets(surfaces);
   std::vector<Mat3> ways;
   for (std::size_t i = 0; i < std::min(most, flats.size()); ++i)
     ways.push_back(Eigen::Quaterniond::FromTwoVectors(flats[i], -Vec3::UnitZ()).toRotationMatrix());

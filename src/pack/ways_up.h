@@ -39,8 +39,12 @@ struct FittingWay {
 std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surfaces,
                                            const PackProblem& problem);
 
-// Ways up in which the surfaces stand on a large flat facet of theirs, as cuts by a plane leave
-// them; the largest first, at most `most`.
+// Large flat facets, as cuts by a plane leave them: normals as long as their area, mm², the largest
+// first.
+std::vector<Vec3> flat_facets(const std::vector<TriangleSoup>& surfaces);
+
+// Ways up in which the surfaces stand on a large flat facet of theirs; the largest first, at most
+// `most`.
 std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces, std::size_t most);
 
 // Whether a box fits the build volume, to within rounding.
