@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "bench/order.h"
 #include "model/packing.h"
 #include "offscreen/offscreen.h"
 #include "pack/merge.h"
-#include "pack/order.h"
 
 namespace packmerger::bench {
 

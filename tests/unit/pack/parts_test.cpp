@@ -8,11 +8,11 @@
 #include <rapidcheck/gtest.h>
 
 #include "base/random.h"
+#include "bench/order.h"
 #include "pack/columns.h"
 #include "pack/exact_gap.h"
 #include "pack/merge.h"
 #include "pack/moves.h"
-#include "pack/order.h"
 #include "pack/rotations.h"
 #include "pack/search.h"
 #include "unit/pack/check.h"

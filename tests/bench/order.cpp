@@ -1,4 +1,4 @@
-#include "pack/order.h"
+#include "bench/order.h"
 
 #include <algorithm>
 #include <atomic>
