@@ -6,8 +6,8 @@
 #include "base/files.h"
 #include "bench/bench.h"
 #include "bench/divided_picture.h"
-#include "job/arrangement.h"
-#include "job/load_models.h"
+#include "bench/told.h"
+#include "job/divide.h"
 #include "model/printer.h"
 #include "picture/preview.h"
 #include "shape/premerge.h"
@@ -30,11 +30,9 @@ void run(const Arguments& arguments) {
   const Profile profile = read_profile(arguments.profile);
   const Progress silent;
   Warnings warnings;
-  Sizing sizing;
-  sizing.size_mm = arguments.size_mm;
-  const auto loaded = load_models({arguments.model}, sizing, warnings, silent);
-  TetMesh tets = solidify(*loaded.front().surface, profile.shape, true, warnings, silent).tets;
-  const BuildVolume build{room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
+  const LoadedModel model = load_model(arguments.model, arguments.size_mm);
+  TetMesh tets = solidify(*model.surface, profile.shape, true, warnings, silent).tets;
+  const BuildVolume build = build_volume(profile);
   Segments segments = premerge(tets, segment(tets, profile.shape, 1, silent), profile.shape, build,
                                warnings, silent);
   const ColouredMesh before = outside_of(tets, segments, arguments.y_up);
@@ -42,7 +40,7 @@ void run(const Arguments& arguments) {
   fmt::print(
       "{} at {:g} mm, {} segments: mean turning angle of the cuts {:.2f} rad before, "
       "{:.2f} rad after smoothing ({:+.0f} %)\n",
-      loaded.front().input.file, arguments.size_mm, segments.count, roughness.before_rad,
+      model.input.file, arguments.size_mm, segments.count, roughness.before_rad,
       roughness.after_rad, 100 * (roughness.after_rad / roughness.before_rad - 1));
   if (arguments.out.empty()) return;
   write_file_whole(arguments.out,

@@ -1,18 +1,14 @@
 #include <algorithm>
-#include <iostream>
 #include <limits>
 #include <memory>
-#include <numbers>
-
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
 
 #include "base/random.h"
 #include "bench/bench.h"
 #include "bench/reference_problem.h"
 #include "bench/reference_search.h"
 #include "bench/stopwatch.h"
+#include "bench/told.h"
+#include "fixtures/models.h"
 #include "pack/pack.h"
 #include "unit/pack/shapes.h"
 
@@ -24,25 +20,6 @@ struct Arguments {
   std::uint64_t seed = 1;
   bool json = false;
 };
-
-// A ring round the z axis.
-Mesh torus(double radius, double tube, int sides, int tube_sides) {
-  TriangleSoup soup;
-  for (int i = 0; i < sides; ++i)
-    for (int j = 0; j < tube_sides; ++j) {
-      const double along = 2 * std::numbers::pi * i / sides;
-      const double round = 2 * std::numbers::pi * j / tube_sides;
-      const double r = radius + tube * std::cos(round);
-      soup.points.emplace_back(r * std::cos(along), r * std::sin(along), tube * std::sin(round));
-    }
-  const auto at = [&](int i, int j) { return i % sides * tube_sides + j % tube_sides; };
-  for (int i = 0; i < sides; ++i)
-    for (int j = 0; j < tube_sides; ++j) {
-      soup.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      soup.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return closed_mesh(soup);
-}
 
 // A U of two legs on a base, all `thick` mm thick.
 Mesh u_shape(double width, double leg, double thick, double depth) {
@@ -74,7 +51,7 @@ std::vector<Mesh> mixed_parts(std::uint64_t seed) {
           parts.push_back(shapes::box(Vec3::Constant(22 * s)));
           break;
         case 1:
-          parts.push_back(torus(13 * s, 5.5 * s, 32, 16));
+          parts.push_back(closed_mesh(fixtures::torus(13 * s, 5.5 * s, 32, 16)));
           break;
         case 2:
           parts.push_back(shapes::cup(13 * s, 28 * s, 3 * s));
@@ -157,10 +134,7 @@ void run(const Arguments& arguments) {
   told["density"] = volume / (1e4 * packing.cost);
   told["removal_paths"] = paths;
   told["seconds"] = taken_s;
-  if (arguments.json)
-    std::cout << told.dump(2) << '\n';
-  else
-    for (const auto& [key, value] : told.items()) fmt::print("{:<19} {}\n", key, value.dump());
+  print_told(told, arguments.json);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "bench/balls_and_sticks.h"
 #include "fixtures/models.h"
+#include "unit/pack/shapes.h"
 #include "unit/printers/shapes.h"
 
 namespace packmerger::bench {
@@ -15,36 +16,6 @@ namespace {
 
 constexpr int kRoundSides = 64;
 constexpr int kArchStations = 48;  // of the half ring
-
-struct RadiusAndHeight {
-  double r, z;
-};
-
-// The surface of revolution of a curve that starts and ends on the axis, matter on its left.
-TriangleSoup revolved(const std::vector<RadiusAndHeight>& curve, int sides) {
-  TriangleSoup soup;
-  const auto rings = static_cast<int>(curve.size()) - 2;
-  soup.points.emplace_back(0, 0, curve.front().z);
-  soup.points.emplace_back(0, 0, curve.back().z);
-  for (int ring = 0; ring < rings; ++ring)
-    for (int side = 0; side < sides; ++side) {
-      const double angle = 2 * std::numbers::pi * side / sides;
-      const auto& [r, z] = curve[static_cast<std::size_t>(ring + 1)];
-      soup.points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-    }
-  const auto point = [=](int ring, int side) { return 2 + ring * sides + side % sides; };
-  for (int side = 0; side < sides; ++side) {
-    soup.triangles.push_back({0, point(0, side + 1), point(0, side)});
-    for (int ring = 0; ring + 1 < rings; ++ring) {
-      const int a = point(ring, side), b = point(ring, side + 1);
-      const int c = point(ring + 1, side + 1), d = point(ring + 1, side);
-      soup.triangles.push_back({a, b, c});
-      soup.triangles.push_back({a, c, d});
-    }
-    soup.triangles.push_back({1, point(rings - 1, side), point(rings - 1, side + 1)});
-  }
-  return soup;
-}
 
 TriangleSoup moved(TriangleSoup soup, const Pose& pose) {
   for (Vec3& point : soup.points) point = pose * point;
@@ -59,19 +30,13 @@ TriangleSoup on_the_plate(TriangleSoup soup) {
 
 TriangleSoup cup(const RoundSize& size) {
   const auto [r, h] = size;
-  return revolved({{0, 0},
-                   {r, 0},
-                   {r, h},
-                   {r - kCupWall_mm, h},
-                   {r - kCupWall_mm, kCupWall_mm},
-                   {0, kCupWall_mm}},
-                  kRoundSides);
+  return to_soup(shapes::cup(r, h, kCupWall_mm, kRoundSides));
 }
 
 TriangleSoup crystal(const RoundSize& size) {
   constexpr double kFoot = 0.2;  // of the radius
   const auto [r, h] = size;
-  return revolved({{0, 0}, {kFoot * r, 0}, {r, h / 2}, {0, h}}, 8);
+  return to_soup(shapes::revolved({{0, 0}, {kFoot * r, 0}, {r, h / 2}, {0, h}}, 8));
 }
 
 }  // namespace
@@ -139,7 +104,7 @@ Mesh molecule_model() {
 }
 
 Mesh table_model() {
-  return shapes::table(kTableSide_mm, kTableHeight_mm, kTableTop_mm, kTableLeg_mm, Vec3::Zero());
+  return printed::table(kTableSide_mm, kTableHeight_mm, kTableTop_mm, kTableLeg_mm, Vec3::Zero());
 }
 
 std::vector<Mesh> group_models(double scale) {

@@ -20,7 +20,7 @@
 #include "bench/reference_problem.h"
 #include "bench/reference_search.h"
 #include "bench/stopwatch.h"
-#include "job/load_models.h"
+#include "bench/told.h"
 #include "model/printer.h"
 #include "pack/pack.h"
 #include "pack/search.h"
@@ -63,10 +63,7 @@ Mesh surface_of(const Arguments& arguments) {
     file = folder.path() / "bunny.obj";
     write_bunny(file);
   }
-  Warnings warnings;
-  Sizing sizing;
-  sizing.size_mm = arguments.size_mm;
-  return *load_models({file}, sizing, warnings, {}).front().surface;
+  return *load_model(file, arguments.size_mm).surface;
 }
 
 double median(std::vector<double> values) {
@@ -217,11 +214,7 @@ void run(const Arguments& arguments) {
   measure_one_packing(problem, told);
   measure_search(problem, told);
   measure_whole(problem, told);
-  if (arguments.json) {
-    std::cout << told.dump(2) << '\n';
-    return;
-  }
-  for (const auto& [key, value] : told.items()) fmt::print("{:<18} {}\n", key, value.dump());
+  print_told(told, arguments.json);
 }
 
 }  // namespace

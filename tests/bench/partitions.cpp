@@ -1,23 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
 #include "bench/bench.h"
-#include "job/arrangement.h"
-#include "job/load_models.h"
+#include "bench/stopwatch.h"
+#include "bench/told.h"
+#include "job/divide.h"
 #include "model/printer.h"
 #include "pack/columns.h"
+#include "pack/ways_up.h"
 #include "shape/adjacency.h"
 #include "shape/cut_plans.h"
 #include "shape/part_surface.h"
@@ -47,16 +44,6 @@ constexpr std::size_t kKept = 6;
 constexpr double kCoarse_mm = 1.5;
 constexpr double kFine_mm = 0.4;
 
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 double support_cm3(const Mesh& surface, const Vec3& up, double support_angle, double step_mm) {
   TriangleSoup standing = to_soup(surface);
   const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()).toRotationMatrix();
@@ -71,25 +58,8 @@ double support_cm3(const Mesh& surface, const Vec3& up, double support_angle, do
 
 // A regular set over the sphere, and the flat faces of the part.
 std::vector<Vec3> directions_of(const Mesh& surface) {
-  std::vector<Vec3> directions;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2.0 * i + 1) / kDirections;
-    const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    directions.emplace_back(std::sqrt(1 - z * z) * std::cos(turn),
-                            std::sqrt(1 - z * z) * std::sin(turn), z);
-  }
-  std::map<std::array<long, 3>, Vec3> facing;
-  for (const auto face : surface.faces()) {
-    const auto [a, b, c] = corners(surface, face);
-    const Vec3 area = (b - a).cross(c - a) / 2;
-    const Vec3 n = area.normalized() * 50;
-    const auto [entry, is_new] =
-        facing.try_emplace({std::lround(n.x()), std::lround(n.y()), std::lround(n.z())}, area);
-    if (!is_new) entry->second += area;
-  }
-  const double whole_mm2 = area_mm2(surface);
-  for (const auto& [key, area] : facing) {
-    if (area.norm() < 0.01 * whole_mm2) continue;
+  std::vector<Vec3> directions = spread_directions(kDirections);
+  for (const Vec3& area : flat_facets({to_soup(surface)})) {
     directions.push_back(area.normalized());
     directions.push_back(-area.normalized());
   }
@@ -133,18 +103,16 @@ void run(const Arguments& arguments) {
   if (arguments.parts > 0) profile.shape.parts = arguments.parts;
   const Progress silent;
   Warnings warnings;
-  Sizing sizing;
-  sizing.size_mm = arguments.size_mm;
-  const auto loaded = load_models({arguments.model}, sizing, warnings, silent);
-  const Mesh& model = *loaded.front().surface;
+  const LoadedModel loaded = load_model(arguments.model, arguments.size_mm);
+  const Mesh& model = *loaded.surface;
   const TetMesh tets = solidify(model, profile.shape, arguments.hollow, warnings, silent).tets;
-  const BuildVolume build{room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
+  const BuildVolume build = build_volume(profile);
   const double angle = radians(profile.support_angle_deg);
   const double solid =
       support_cm3(model, arguments.y_up ? Vec3::UnitY() : Vec3::UnitZ(), angle, kFine_mm);
   fmt::print("{} at {:g} mm: {} tetrahedra, {:.1f} cm³; solid as it stands needs {:.1f} cm³\n",
-             loaded.front().input.file, arguments.size_mm, tets.count(),
-             total_volume_mm3(tets) / 1000, solid);
+             loaded.input.file, arguments.size_mm, tets.count(), total_volume_mm3(tets) / 1000,
+             solid);
   fmt::print("{:<10} {:>7} {:>6} {:>8} {:>6} {:>8} {:>6} {:>8} {:>7} {:>6}\n", "", "planned",
              "parts", "judged", "ratio", "exact", "ratio", "least mm²", "least %", "s");
 

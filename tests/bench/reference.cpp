@@ -11,7 +11,7 @@
 #include "bench/reference_problem.h"
 #include "bench/reference_search.h"
 #include "bench/stopwatch.h"
-#include "job/load_models.h"
+#include "bench/told.h"
 #include "model/printer.h"
 
 namespace packmerger::bench {
@@ -28,13 +28,8 @@ struct Arguments {
 };
 
 PackProblem problem_of(const Arguments& arguments) {
-  const Progress silent;
-  Warnings warnings;
-  Sizing sizing;
-  sizing.size_mm = arguments.size_mm;
-  const auto loaded = load_models({arguments.model}, sizing, warnings, silent);
-  return paper_problem(*loaded.front().surface, read_profile(arguments.profile), arguments.grid_mm,
-                       arguments.step_deg);
+  return paper_problem(*load_model(arguments.model, arguments.size_mm).surface,
+                       read_profile(arguments.profile), arguments.grid_mm, arguments.step_deg);
 }
 
 void run(const Arguments& arguments) {
@@ -66,10 +61,7 @@ void run(const Arguments& arguments) {
     told["seconds"] = watch.seconds();
     told["gcells_per_s"] = packer.cells() / watch.seconds() / 1e9;
   }
-  if (arguments.json)
-    std::cout << told.dump(2) << '\n';
-  else
-    for (const auto& [key, value] : told.items()) fmt::print("{:<14} {}\n", key, value.dump());
+  print_told(told, arguments.json);
 }
 
 }  // namespace

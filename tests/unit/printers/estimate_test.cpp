@@ -14,15 +14,15 @@
 namespace packmerger {
 namespace {
 
-using shapes::box;
-using shapes::tray_of;
+using printed::box;
+using printed::tray_of;
 
 Estimate of(const Profile& profile, std::vector<Mesh> parts, const Assembly& assembly = {}) {
   return estimate(profile, {tray_of(std::move(parts))}, assembly, Progress());
 }
 
 Mesh standing_bunny(const TriangleSoup& bunny, double height_mm) {
-  TriangleSoup soup = shapes::with_holes_filled(bunny);
+  TriangleSoup soup = printed::with_holes_filled(bunny);
   for (Vec3& p : soup.points) p = Vec3(p.x(), -p.z(), p.y());
   Mesh mesh = closed_mesh(soup);
   const Box3 at = bounding_box(mesh);
@@ -52,7 +52,7 @@ TEST(Polyjet, BoxByHand) {
 }
 
 TEST(Polyjet, SolidSphereOfTableOne) {
-  const Estimate e = of(fixtures::shipped_profile("objet30"), {shapes::resting_sphere(40)});
+  const Estimate e = of(fixtures::shipped_profile("objet30"), {printed::resting_sphere(40)});
   EXPECT_NEAR(e.time_s, 22980, 2298);
   EXPECT_NEAR(e.support_g, 110, 11);
 }
@@ -170,14 +170,14 @@ TEST(Toolpath, ExposedAreas) {
   for (int layer = 0; layer < 20; ++layer)
     EXPECT_NEAR(exposed[layer], layer < 4 || layer >= 16 ? 100 : 0, 1e-9) << layer;
   // a slope that recedes by less than the shells within the depth asks for nothing
-  const Mesh steep = shapes::frustum(10, 9, 4, Vec3(20, 20, 0));
+  const Mesh steep = printed::frustum(10, 9, 4, Vec3(20, 20, 0));
   const std::vector<double> slopes = exposed_areas(settings, 0.2, {&steep}, 20);
   EXPECT_NEAR(slopes[10], 0, 1e-9);
 }
 
 TEST(Toolpath, LevelFacetsAreBridged) {
   Profile profile = fixtures::plain_toolpath();
-  const std::vector<Mesh> table{shapes::table(40, 30, 4, 5, Vec3(10, 10, 0))};
+  const std::vector<Mesh> table{printed::table(40, 30, 4, 5, Vec3(10, 10, 0))};
   profile.fdm.level_support_fraction = 1;
   const Estimate held = of(profile, table);
   profile.fdm.level_support_fraction = 0;
@@ -193,7 +193,7 @@ TEST(Estimate, TraysAddUp) {
   for (const Profile& profile :
        {fixtures::plain_polyjet(), fixtures::plain_deposition(), fixtures::plain_toolpath()}) {
     const Tray a = tray_of({box(Vec3(5, 5, 4), Vec3(25, 30, 14))});
-    const Tray b = tray_of({shapes::resting_sphere(12, 3)});
+    const Tray b = tray_of({printed::resting_sphere(12, 3)});
     const Estimate both = estimate(profile, {a, b}, {3, 2}, Progress());
     const Estimate one = estimate(profile, {a}, {}, Progress());
     const Estimate other = estimate(profile, {b}, {}, Progress());
@@ -216,7 +216,7 @@ TEST(Estimate, NothingOnNoTray) {
 TEST(Estimate, MaterialScalesWithTheCube) {
   for (const double scale : {0.5, 1.7, 3.0}) {
     for (const Profile& profile : {fixtures::plain_polyjet(), fixtures::plain_deposition()}) {
-      const Mesh small = shapes::resting_sphere(10, 3);
+      const Mesh small = printed::resting_sphere(10, 3);
       Mesh large = small;
       for (const auto vertex : large.vertices())
         large.set_point(vertex, large.point(vertex) * scale);
@@ -280,7 +280,7 @@ TEST(Estimate, RefusesAProfileItWouldDivideByZeroWith) {
 
 TEST(Estimate, CanBeInterrupted) {
   const std::atomic<bool> cancelled{true};
-  EXPECT_THROW(estimate(fixtures::plain_polyjet(), {tray_of({shapes::resting_sphere(5, 2)})}, {},
+  EXPECT_THROW(estimate(fixtures::plain_polyjet(), {tray_of({printed::resting_sphere(5, 2)})}, {},
                         Progress({}, &cancelled)),
                Error);
 }

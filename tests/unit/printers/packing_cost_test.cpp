@@ -49,8 +49,8 @@ TEST(PackingCost, PolyjetMoneyByHand) {
 
 TEST(PackingCost, DepositionAgreesWithTheEstimate) {
   const Profile profile = with(fixtures::plain_deposition(), Objective::kPrinter);
-  const Mesh part = shapes::box(Vec3(0, 0, 8), Vec3(10, 10, 18));
-  const Estimate e = estimate(profile, {shapes::tray_of({part})}, {1, 0}, Progress());
+  const Mesh part = printed::box(Vec3(0, 0, 8), Vec3(10, 10, 18));
+  const Estimate e = estimate(profile, {printed::tray_of({part})}, {1, 0}, Progress());
   EXPECT_NEAR(packing_cost(profile).evaluate(measure(Vec3(10, 10, 18), 800, 1000, 1)), e.cost,
               1e-6);
 }

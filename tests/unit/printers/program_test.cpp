@@ -14,8 +14,8 @@
 namespace packmerger {
 namespace {
 
-using shapes::box;
-using shapes::tray_of;
+using printed::box;
+using printed::tray_of;
 
 Tray small_cube() { return tray_of({box(Vec3(100, 60, 0), Vec3(110, 70, 5))}); }
 
@@ -134,11 +134,11 @@ TEST(Program, SupportStaysInsideWithTheMarginThatIsAskedFor) {
   const Profile profile = fixtures::shipped_profile("replicator");
   const double margin = slicer_margin_mm(profile);
   const Mesh tee =
-      shapes::from_cells({margin, margin + 8, margin + 12, margin + 20},
-                         {margin, margin + 8, margin + 12, margin + 20}, {0, 10, 12},
-                         [](int x, int y, int z) { return z == 1 || (x == 1 && y == 1); });
+      printed::from_cells({margin, margin + 8, margin + 12, margin + 20},
+                          {margin, margin + 8, margin + 12, margin + 20}, {0, 10, 12},
+                          [](int x, int y, int z) { return z == 1 || (x == 1 && y == 1); });
   EXPECT_NO_THROW(make_program(profile, tray_of({tee}), "tee", Progress()));
-  EXPECT_EQ(error_of(profile, tray_of({shapes::moved(tee, Vec3(-margin, 0, 0))})).fault(),
+  EXPECT_EQ(error_of(profile, tray_of({printed::moved(tee, Vec3(-margin, 0, 0))})).fault(),
             Fault::kBadProfile);
 }
 

@@ -11,7 +11,7 @@
 #include "model/mesh.h"
 #include "model/tray.h"
 
-namespace packmerger::shapes {
+namespace packmerger::printed {
 
 inline Mesh box(const Vec3& low, const Vec3& high) { return closed_mesh(fixtures::box(low, high)); }
 
@@ -127,4 +127,4 @@ inline TriangleSoup with_holes_filled(TriangleSoup soup) {
   return soup;
 }
 
-}  // namespace packmerger::shapes
+}  // namespace packmerger::printed

@@ -12,8 +12,8 @@
 namespace packmerger {
 namespace {
 
-using shapes::box;
-using shapes::moved;
+using printed::box;
+using printed::moved;
 
 std::vector<Layer> cut(const std::vector<Mesh>& parts, double layer_mm, double angle = 0) {
   std::vector<const Mesh*> pointers;
@@ -49,8 +49,8 @@ TEST(SliceLayers, Box) {
 
 TEST(SliceLayers, CornersInTheCuttingPlaneCloseContours) {
   // planes at 0.5, 1.5, …: corners and whole facets lie in them
-  const Mesh mesh = shapes::from_cells({0, 10, 20}, {0, 10}, {0, 0.5, 1.5, 4},
-                                       [](int x, int, int z) { return x == 0 || z == 1; });
+  const Mesh mesh = printed::from_cells({0, 10, 20}, {0, 10}, {0, 0.5, 1.5, 4},
+                                        [](int x, int, int z) { return x == 0 || z == 1; });
   const std::vector<Layer> layers = cut({mesh}, 1, 0);
   ASSERT_EQ(layers.size(), 4U);
   for (const Layer& layer : layers) ASSERT_EQ(layer.contours.size(), 1U);
@@ -60,7 +60,7 @@ TEST(SliceLayers, CornersInTheCuttingPlaneCloseContours) {
 }
 
 TEST(SliceLayers, HolesCountNegative) {
-  const Mesh cover = shapes::cover(Vec3(30, 20, 10), 2, Vec3(0, 0, 0));
+  const Mesh cover = printed::cover(Vec3(30, 20, 10), 2, Vec3(0, 0, 0));
   const Layer layer = cut({cover}, 1)[3];
   ASSERT_EQ(layer.contours.size(), 2U);
   const auto [hole, outline] = std::minmax(layer.contours[0].area_mm2, layer.contours[1].area_mm2);
@@ -82,8 +82,8 @@ TEST(SliceLayers, VolumeIsAreaByHeight) {
 
 TEST(SliceLayers, ExtentsIncludeSupport) {
   // a slab on one leg: support reaches below all of the slab
-  const Mesh mesh = shapes::from_cells({0, 10, 60}, {0, 10, 40}, {0, 8, 10},
-                                       [](int x, int y, int z) { return z == 1 || x + y == 0; });
+  const Mesh mesh = printed::from_cells({0, 10, 60}, {0, 10, 40}, {0, 8, 10},
+                                        [](int x, int y, int z) { return z == 1 || x + y == 0; });
   const std::vector<Layer> without = cut({mesh}, 1, radians(90));
   EXPECT_NEAR(without[3].extent.sizes().x(), 10, 1e-9);
   const std::vector<Layer> with = cut({mesh}, 1, 0);

@@ -17,8 +17,8 @@
 namespace packmerger {
 namespace {
 
-using shapes::box;
-using shapes::tray_of;
+using printed::box;
+using printed::tray_of;
 
 Profile replicator() { return fixtures::shipped_profile("replicator"); }
 
@@ -100,7 +100,7 @@ TEST(Slice, CubeMaterialAndTime) {
 
 TEST(Slice, TableOfThePaper) {
   const Estimate e = estimate_by_slicer(
-      replicator(), {tray_of({shapes::table(72, 56, 5, 7, Vec3(70, 35, 0))})}, {1, 0}, Progress());
+      replicator(), {tray_of({printed::table(72, 56, 5, 7, Vec3(70, 35, 0))})}, {1, 0}, Progress());
   EXPECT_NEAR(e.time_s, 9540, 954);
   EXPECT_NEAR(e.support_g, 17.2, 1.72);
   EXPECT_EQ(e.source, EstimateSource::kSlicer);
@@ -111,9 +111,9 @@ TEST(Slice, TheToolPathEstimateIsNear) {
   const Profile profile = replicator();
   std::vector<Mesh> models{box(Vec3(40, 40, 0), Vec3(60, 60, 20)),
                            box(Vec3(40, 40, 0), Vec3(80, 80, 40)),
-                           shapes::table(72, 56, 5, 7, Vec3(40, 40, 0)),
-                           shapes::cover(Vec3(60, 60, 40), 3, Vec3(40, 40, 0)),
-                           shapes::moved(shapes::resting_sphere(30, 5), Vec3(20, 20, 0))};
+                           printed::table(72, 56, 5, 7, Vec3(40, 40, 0)),
+                           printed::cover(Vec3(60, 60, 40), 3, Vec3(40, 40, 0)),
+                           printed::moved(printed::resting_sphere(30, 5), Vec3(20, 20, 0))};
   for (const Mesh& model : models) {
     const Tray tray = tray_of({model});
     const Estimate fast = estimate(profile, {tray}, {}, Progress());
@@ -126,8 +126,8 @@ TEST(Slice, TheToolPathEstimateIsNear) {
 TEST(Slice, PartsKeepTheirHeightAboveEachOther) {
   // two plates, one above the other on a post of its own: nothing may be dropped to the plate
   const Mesh low = box(Vec3(100, 60, 0), Vec3(120, 80, 2));
-  const Mesh high = shapes::from_cells({95, 99, 120}, {60, 80}, {0, 8, 10},
-                                       [](int x, int, int z) { return x == 0 || z == 1; });
+  const Mesh high = printed::from_cells({95, 99, 120}, {60, 80}, {0, 8, 10},
+                                        [](int x, int, int z) { return x == 0 || z == 1; });
   const SlicedTray sliced = figures(replicator(), {low, high});
   EXPECT_NE(sliced.gcode.find(";Z:10\n"), std::string::npos);
   double highest = 0;

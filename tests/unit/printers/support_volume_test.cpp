@@ -12,7 +12,7 @@
 namespace packmerger {
 namespace {
 
-using shapes::box;
+using printed::box;
 
 double support(const std::vector<Mesh>& parts, double angle_deg = 0) {
   std::vector<const Mesh*> pointers;
@@ -63,7 +63,7 @@ TEST(SupportVolume, PartsThatTouchOrOverlapAreOneMatter) {
 TEST(SupportVolume, SphereOnThePlate) {
   const double r = 30;
   const double exact = std::numbers::pi * r * r * r / 3;
-  EXPECT_NEAR(support({shapes::resting_sphere(r)}), exact, exact * 5e-4);
+  EXPECT_NEAR(support({printed::resting_sphere(r)}), exact, exact * 5e-4);
 }
 
 TEST(SupportVolume, SphereAtFortyFiveDegreesNeedsItsCapAlone) {
@@ -72,26 +72,26 @@ TEST(SupportVolume, SphereAtFortyFiveDegreesNeedsItsCapAlone) {
   const double a = r / std::numbers::sqrt2;
   const double exact = std::numbers::pi * a * a * r -
                        2 * std::numbers::pi / 3 * (r * r * r - std::pow(r * r - a * a, 1.5));
-  EXPECT_NEAR(support({shapes::resting_sphere(r)}, 45), exact, exact * 0.02);
+  EXPECT_NEAR(support({printed::resting_sphere(r)}, 45), exact, exact * 0.02);
 }
 
 TEST(SupportVolume, Table) {
-  const Mesh table = shapes::table(72, 56, 5, 7, Vec3(10, 20, 0));
+  const Mesh table = printed::table(72, 56, 5, 7, Vec3(10, 20, 0));
   const double exact = (72.0 * 72 - 4 * 49) * 51;
   EXPECT_NEAR(support({table}), exact, exact * 2e-3);
   EXPECT_NEAR(support({table}, 45), exact, exact * 2e-3);
 }
 
 TEST(SupportVolume, CavityIsFilledToItsRoof) {
-  const Mesh shell = shapes::moved(closed_mesh(fixtures::nested_cubes(40, 20)), Vec3(20, 20, 20));
+  const Mesh shell = printed::moved(closed_mesh(fixtures::nested_cubes(40, 20)), Vec3(20, 20, 20));
   const double lifted = bounding_box(shell).min().z();
   const double below = std::max(0.0, lifted) * 40 * 40;
   EXPECT_NEAR(support({shell}), 20 * 20 * 20 + below, 30);
 }
 
 TEST(SupportVolume, NestedCoversShareTheirSupport) {
-  const Mesh outer = shapes::cover(Vec3(30, 30, 20), 2, Vec3(0, 0, 0));
-  const Mesh inner = shapes::cover(Vec3(24, 24, 16), 2, Vec3(3, 3, 0));
+  const Mesh outer = printed::cover(Vec3(30, 30, 20), 2, Vec3(0, 0, 0));
+  const Mesh inner = printed::cover(Vec3(24, 24, 16), 2, Vec3(3, 3, 0));
   EXPECT_NEAR(support({outer}), 26 * 26 * 18, 40);
   EXPECT_NEAR(support({inner}), 20 * 20 * 14, 30);
   // the outer one's emptiness less the whole of the inner one, plus the inner one's own
@@ -100,7 +100,7 @@ TEST(SupportVolume, NestedCoversShareTheirSupport) {
 
 TEST(SupportVolume, AFacetAtTheAngleItselfNeedsNone) {
   // an inverted frustum whose sides overhang by 45° exactly
-  const Mesh mesh = shapes::frustum(10, 30, 10, Vec3(50, 50, 0));
+  const Mesh mesh = printed::frustum(10, 30, 10, Vec3(50, 50, 0));
   EXPECT_NEAR(support({mesh}, 45), 0, 1e-9);
   const double under = 30 * 30 * 10 - 10.0 / 3 * (100 + 900 + 300);
   EXPECT_NEAR(support({mesh}, 44.9), under, under * 2e-3);
@@ -115,13 +115,13 @@ TEST(SupportVolume, WhatLiesBelowThePlateCountsForNothing) {
 }
 
 TEST(SupportVolume, MeasuresTheInterfaceToo) {
-  const Mesh table = shapes::table(72, 56, 5, 7, Vec3(10, 20, 0));
+  const Mesh table = printed::table(72, 56, 5, 7, Vec3(10, 20, 0));
   const SupportMeasure measure = support_measure({&table}, 0);
   EXPECT_NEAR(measure.interface_mm2, 72 * 72 - 4 * 49, 20);
 }
 
 TEST(SupportVolume, SameBytesOnAnyNumberOfThreads) {
-  const Mesh blob = shapes::moved(closed_mesh(fixtures::blob(60, 4)), Vec3(50, 50, 40));
+  const Mesh blob = printed::moved(closed_mesh(fixtures::blob(60, 4)), Vec3(50, 50, 40));
   const double many = support_volume_mm3({&blob}, 0.3);
   const ThreadLimit one(1);
   EXPECT_EQ(many, support_volume_mm3({&blob}, 0.3));
@@ -132,7 +132,7 @@ TEST(SupportVolume, ScalesWithTheCubeOfSizeAndIgnoresPlace) {
     const double scale = *rc::gen::inRange(1, 50) * 0.13;
     const Vec3 by(*rc::gen::inRange(-500, 500) * 0.37, *rc::gen::inRange(-500, 500) * 0.41, 0);
     const double turn = *rc::gen::inRange(0, 360);
-    const Mesh model = shapes::moved(closed_mesh(fixtures::blob(20, 2)), Vec3(0, 0, 15));
+    const Mesh model = printed::moved(closed_mesh(fixtures::blob(20, 2)), Vec3(0, 0, 15));
     Pose pose = Pose::Identity();
     pose.translate(by);
     pose.rotate(Eigen::AngleAxisd(radians(turn), Vec3::UnitZ()));
@@ -152,7 +152,7 @@ TEST(SupportVolume, PartsApartAddUp) {
     for (int i = 0; i < count; ++i) {
       const double z = *rc::gen::inRange(0, 30);
       parts.push_back(
-          shapes::moved(closed_mesh(fixtures::sphere(8, 3)), Vec3(20 * i, 7 * i, z + 8)));
+          printed::moved(closed_mesh(fixtures::sphere(8, 3)), Vec3(20 * i, 7 * i, z + 8)));
       sum += coarse_support({parts.back()}, 1 << 12);
     }
     RC_ASSERT(std::abs(coarse_support(parts, 1 << 14) - sum) <= 2e-2 * sum);
@@ -197,7 +197,7 @@ TEST(SupportVolume, AgreesWithCountingOverRandomBoxes) {
 
 TEST(SupportVolume, RealBunny) {
   PACKMERGER_TEST_MODEL(bunny, "stanford-bunny.obj");
-  TriangleSoup standing = shapes::with_holes_filled(bunny);
+  TriangleSoup standing = printed::with_holes_filled(bunny);
   for (Vec3& p : standing.points) p = Vec3(p.x(), -p.z(), p.y());
   Mesh mesh = closed_mesh(standing);
   const Box3 at = bounding_box(mesh);
