@@ -1,6 +1,7 @@
 #include "job/choose_division.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -57,26 +58,39 @@ double packed_cost(const std::shared_ptr<const Divided>& model, const Profile& p
   }
 }
 
+// What a plan makes of the whole model; without one, what the paper's clusters do.
+Candidate candidate_of(const Divided& whole, const CutPlan* plan, const Profile& profile,
+                       std::uint64_t seed, const Progress& progress) {
+  Candidate made;
+  made.model = std::make_shared<Divided>(whole);
+  if (plan == nullptr) {
+    divide_by_clusters(*made.model, profile, seed, made.warnings, progress);
+  } else {
+    const Segments cut = cut_as_planned(made.model->tets, *plan, progress);
+    made.model->clusters = cut.count;
+    made.model->segments = premerge(made.model->tets, cut, profile.shape, build_volume(profile),
+                                    made.warnings, progress);
+  }
+  made.cost = packed_cost(made.model, profile, seed, progress);
+  return made;
+}
+
 std::vector<Candidate> candidates_of(const Divided& whole, const Profile& profile,
                                      std::uint64_t seed, const Progress& progress) {
-  const BuildVolume build = build_volume(profile);
   CutSearch search;
   search.support_angle = radians(profile.support_angle_deg);
   search.part_price_mm3 = part_price_mm3(profile, total_volume_mm3(whole.tets));
-  std::vector<CutPlan> plans = cut_plans(whole.tets, profile.shape, build, search, seed, progress);
+  std::vector<CutPlan> plans =
+      cut_plans(whole.tets, profile.shape, build_volume(profile), search, seed, progress);
   plans.resize(std::min(plans.size(), kMostPlans));
   std::vector<Candidate> candidates(1 + plans.size());
+  const Progress silent({}, progress.cancelled());  // several report at once
+  std::atomic<std::size_t> ready = 0;
+  progress.report("choosing a division", 0);
   parallel_for(candidates.size(), [&](std::size_t i) {
-    Candidate& one = candidates[i];
-    one.model = std::make_shared<Divided>(whole);
-    if (i == 0) {
-      divide_by_clusters(*one.model, profile, seed, one.warnings, progress);
-      return;
-    }
-    const Segments cut = cut_as_planned(one.model->tets, plans[i - 1], progress);
-    one.model->clusters = cut.count;
-    one.model->segments =
-        premerge(one.model->tets, cut, profile.shape, build, one.warnings, progress);
+    candidates[i] = candidate_of(whole, i == 0 ? nullptr : &plans[i - 1], profile, seed, silent);
+    progress.report("choosing a division",
+                    static_cast<double>(++ready) / static_cast<double>(candidates.size()));
   });
   return candidates;
 }
@@ -90,13 +104,7 @@ Divided choose_division(const Mesh& surface, const Profile& profile, bool hollow
   const Divided whole = undivided(surface, profile, hollow_it, warnings, progress);
   std::vector<Candidate> candidates = candidates_of(whole, profile, seed, progress);
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    progress.report("choosing a division",
-                    static_cast<double>(i) / static_cast<double>(candidates.size()));
-    candidates[i].cost = packed_cost(candidates[i].model, profile, seed, progress);
-    least = std::min(least, candidates[i].cost);
-  }
-  progress.report("choosing a division", 1);
+  for (const Candidate& candidate : candidates) least = std::min(least, candidate.cost);
   const Candidate* best = &candidates.front();
   if (std::isfinite(least)) {
     const auto rank = [&](const Candidate& c) {

@@ -44,7 +44,7 @@ struct PackProblem {
   double grid_mm = 1;            // cell of the height field in the answer
   double rotation_step = 0;      // radians, about each of the three axes
   double support_angle = 0;      // radians below the horizontal; 0: every down-facing facet
-  double search_grid_mm = 2;     // cell of the height field while layouts are searched
+  double search_grid_mm = 3;     // cell of the height field while layouts are searched
   Cost cost;
   int tabu_memory = 3;     // m: rounds a move stays forbidden
   int tabu_patience = 10;  // rounds without a better layout before the search starts afresh

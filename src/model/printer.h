@@ -51,7 +51,7 @@ struct PackSettings {
   int tabu_memory = 3;
   int tabu_patience = 10;
   int tabu_samples = 8;
-  double search_grid_mm = 2;
+  double search_grid_mm = 3;
 };
 
 // docs/ESTIMATES gives the formulas.

@@ -114,27 +114,29 @@ class Rasterizer {
   Rasterizer(DepthMaps& maps, double grid, double normal_limit)
       : maps_(maps), grid_(grid), normal_limit_(normal_limit) {}
 
-  void enter(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
-    const double low_x = std::min({a.x, b.x, c.x});
-    const double high_x = std::max({a.x, b.x, c.x});
-    const double low_y = std::min({a.y, b.y, c.y});
-    const double high_y = std::max({a.y, b.y, c.y});
-    const CellRange columns(low_x, high_x, maps_.width);
-    const CellRange rows(low_y, high_y, maps_.height);
+  // Into `low` and `top`.
+  void enter_extent(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    const CellRange columns(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), maps_.width);
+    const CellRange rows(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), maps_.height);
     if (columns.last < columns.first || rows.last < rows.first) return;
     if (columns.first == columns.last && rows.first == rows.last) {
       enter_bounds(at(maps_, columns.first, rows.first), std::min({a.z, b.z, c.z}),
                    std::max({a.z, b.z, c.z}));
-    } else {
-      for (const CellPoint* corner : {&a, &b, &c})
-        enter_bounds(at(maps_, columns.holding(corner->x), rows.holding(corner->y)), corner->z,
-                     corner->z);
-      enter_lines<&CellPoint::x, &CellPoint::y>(a, b, c, columns, rows, 1, maps_.width);
-      enter_lines<&CellPoint::y, &CellPoint::x>(a, b, c, rows, columns, maps_.width, 1);
+      return;
     }
-    if (centres_up_to(low_x) < centres_up_to(high_x) &&
-        centres_up_to(low_y) < centres_up_to(high_y))
-      enter_centres(a, b, c);
+    for (const CellPoint* corner : {&a, &b, &c})
+      enter_bounds(at(maps_, columns.holding(corner->x), rows.holding(corner->y)), corner->z,
+                   corner->z);
+    enter_lines<&CellPoint::x, &CellPoint::y>(a, b, c, columns, rows, 1, maps_.width);
+    enter_lines<&CellPoint::y, &CellPoint::x>(a, b, c, rows, columns, maps_.width, 1);
+  }
+
+  // Into `bottom`, `roof` and `hangs`.
+  void enter_centres(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    if (centres_up_to(std::min({a.x, b.x, c.x})) == centres_up_to(std::max({a.x, b.x, c.x})) ||
+        centres_up_to(std::min({a.y, b.y, c.y})) == centres_up_to(std::max({a.y, b.y, c.y})))
+      return;
+    enter_rows(a, b, c);
   }
 
  private:
@@ -180,7 +182,7 @@ class Rasterizer {
     }
   }
 
-  void enter_centres(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+  void enter_rows(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
     const Vec3 normal =
         Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
     if (normal.z() == 0) return;
@@ -217,6 +219,21 @@ class Rasterizer {
   double normal_limit_;
 };
 
+template <bool kExtents>
+DepthMaps drawn(const TriangleSoup& surface, double grid_mm, double support_angle) {
+  DepthMaps maps = empty_maps_around(surface, grid_mm);
+  const std::vector<CellPoint> points = in_cells(surface.points, grid_mm, maps);
+  Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
+  for (const auto& triangle : surface.triangles) {
+    const CellPoint& a = points[static_cast<std::size_t>(triangle[0])];
+    const CellPoint& b = points[static_cast<std::size_t>(triangle[1])];
+    const CellPoint& c = points[static_cast<std::size_t>(triangle[2])];
+    if constexpr (kExtents) rasterizer.enter_extent(a, b, c);
+    rasterizer.enter_centres(a, b, c);
+  }
+  return maps;
+}
+
 DepthMaps once_turned(const DepthMaps& maps) {
   DepthMaps turned;
   turned.x0 = -(maps.y0 + maps.height);
@@ -242,17 +259,15 @@ DepthMaps once_turned(const DepthMaps& maps) {
 }  // namespace
 
 DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
-  DepthMaps maps = empty_maps_around(surface, grid_mm);
-  const std::vector<CellPoint> points = in_cells(surface.points, grid_mm, maps);
-  Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
-  for (const auto& [a, b, c] : surface.triangles)
-    rasterizer.enter(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
-                     points[static_cast<std::size_t>(c)]);
-  return maps;
+  return drawn<true>(surface, grid_mm, support_angle);
+}
+
+DepthMaps draw_centre_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
+  return drawn<false>(surface, grid_mm, support_angle);
 }
 
 DepthMaps draw_sampled_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
-  const DepthMaps fine = draw_depth_maps(surface, grid_mm / 2, support_angle);
+  const DepthMaps fine = draw_centre_maps(surface, grid_mm / 2, support_angle);
   const auto half = [](int cells) { return cells >= 0 ? cells / 2 : (cells - 1) / 2; };
   DepthMaps maps;
   maps.box = fine.box;

@@ -34,6 +34,9 @@ struct DepthMaps {
 // support_angle (radians) below the horizontal.
 DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
 
+// The samples at the centres alone, a few times faster: nothing is in `low` and `top`.
+DepthMaps draw_centre_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
+
 // The surface as a search on coarse cells sees it: `low` and `top` are the least and greatest of
 // samples at a quarter of a cell to both sides of the centre, so that matter takes half a cell more
 // room than it has, which on average is room for a gap of that width; the samples are taken a

@@ -33,6 +33,20 @@ bool Layouter::put(FilledTray& tray, const Task& task, const RotationChoice& rot
   return true;
 }
 
+bool Layouter::put_near(FilledTray& tray, Task task, const RotationChoice& rotations,
+                        bool on_plate_only) const {
+  const int most = std::max(spec_.columns(), spec_.rows());
+  const auto widened = [](const Range& window) {
+    return Range{window.first - window.count(), window.last + window.count()};
+  };
+  while (!put(tray, task, rotations, on_plate_only)) {
+    if (!task.stays_near || std::min(task.x.count(), task.y.count()) > 2 * most) return false;
+    task.x = widened(task.x);
+    task.y = widened(task.y);
+  }
+  return true;
+}
+
 void Layouter::put_off_grid(FilledTray& tray, const Part& part) const {
   const WayUp& way = part.ways.front();
   tray.closed = true;
@@ -60,7 +74,7 @@ std::optional<Layout> Layouter::carried_out(const Draft& draft, const RotationCh
     }
     auto tray = std::make_shared<FilledTray>(spec_);
     for (const Task& task : wanted.tasks)
-      if (!put(*tray, task, rotations, on_plate_only)) loose.push_back({task.part});
+      if (!put_near(*tray, task, rotations, on_plate_only)) loose.push_back({task.part});
     if (!tray->placed.empty()) trays.push_back(std::move(tray));
     if (bound(trays) > give_up_above) return std::nullopt;
   }

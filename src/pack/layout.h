@@ -39,12 +39,13 @@ struct Layout {
 
 // A part to be put on a tray: in a given rotation at the cheapest place of a window, or freely, in
 // several rotations on the first tray that has a place. What finds no place in its window is put
-// freely.
+// freely; what stays near looks in ever wider windows first.
 struct Task {
   const Part* part = nullptr;
   const RotatedPart* rotated = nullptr;  // nullptr: freely
   Range x = kAllCells;                   // the window, cells
   Range y = kAllCells;
+  bool stays_near = false;
 };
 
 // What to put where, in this order.
@@ -75,6 +76,8 @@ class Layouter {
  private:
   bool put(FilledTray& tray, const Task& task, const RotationChoice& rotations,
            bool on_plate_only) const;
+  bool put_near(FilledTray& tray, Task task, const RotationChoice& rotations,
+                bool on_plate_only) const;
   void put_off_grid(FilledTray& tray, const Part& part) const;
   double bound(const std::vector<std::shared_ptr<FilledTray>>& trays) const;
 

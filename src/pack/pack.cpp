@@ -180,11 +180,13 @@ class Finisher {
         finest_(problem, grid_of(problem, finest_cell_mm(problem), true, margin_mm), pace) {}
 
   Packing finished(const Layout& found) {
-    Layout layout = refined(found, found_on_, placing_.layouter, placing_.maker, found_on_.cell_mm);
-    layout = refined(layout, placing_.spec.grid, finest_.layouter, finest_.maker, problem_.grid_mm);
+    Layout layout =
+        refined(found, found_on_, placing_.layouter, placing_.maker, found_on_.cell_mm, false);
+    layout = refined(layout, placing_.spec.grid, finest_.layouter, finest_.maker, problem_.grid_mm,
+                     true);
     for (int pass = 1; pass < kFinestPasses; ++pass) {
-      Layout again =
-          refined(layout, finest_.spec.grid, finest_.layouter, finest_.maker, problem_.grid_mm / 2);
+      Layout again = refined(layout, finest_.spec.grid, finest_.layouter, finest_.maker,
+                             problem_.grid_mm / 2, true);
       if (again.cost >= layout.cost) break;
       layout = std::move(again);
     }

@@ -194,7 +194,7 @@ WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& sha
     std::vector<DepthMaps> members;
     std::vector<const DepthMaps*> all;
     for (const TriangleSoup& shape : shapes)
-      members.push_back(draw_depth_maps(turned(shape, base), grid_.cell_mm, 0));
+      members.push_back(draw_centre_maps(turned(shape, base), grid_.cell_mm, 0));
     for (const DepthMaps& member : members) all.push_back(&member);
     const EnvelopeSupport support =
         envelope_support(united_maps(all), part.volume_mm3, grid_.cell_mm);

@@ -22,7 +22,7 @@ Range window(int cell, double shift_from_mm, double shift_to_mm, double from_cel
 using Rotations = std::map<const Part*, const RotatedPart*>;
 
 Draft drafted(const Layout& layout, const Grid& from, const Grid& to, const Rotations& rotations,
-              double reach_mm) {
+              double reach_mm, bool stays_near) {
   Draft draft;
   for (const auto& tray : layout.trays) {
     Draft::Tray wanted;
@@ -36,7 +36,8 @@ Draft drafted(const Layout& layout, const Grid& from, const Grid& to, const Rota
       wanted.tasks.push_back(
           {placed.part, now,
            window(placed.x, was->shift.x(), now->shift.x(), from.cell_mm, to.cell_mm, reach_mm),
-           window(placed.y, was->shift.y(), now->shift.y(), from.cell_mm, to.cell_mm, reach_mm)});
+           window(placed.y, was->shift.y(), now->shift.y(), from.cell_mm, to.cell_mm, reach_mm),
+           stays_near});
     }
     draft.trays.push_back(std::move(wanted));
   }
@@ -46,7 +47,7 @@ Draft drafted(const Layout& layout, const Grid& from, const Grid& to, const Rota
 }  // namespace
 
 Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartMaker& maker,
-               double reach_mm) {
+               double reach_mm, bool stays_near) {
   Rotations rotations;  // nullptr where the part stands off the grid, or no longer fits
   for (const auto& tray : layout.trays)
     for (const Placed& placed : tray->placed)
@@ -61,8 +62,9 @@ Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartM
   const std::array<double, 2> reaches{0, reach_mm};
   std::array<Layout, 2> layouts;
   parallel_for(reaches.size(), [&](std::size_t i) {
-    layouts[i] = *to.carried_out(drafted(layout, from, to.spec().grid, rotations, reaches[i]),
-                                 the_same, std::numeric_limits<double>::infinity());
+    layouts[i] =
+        *to.carried_out(drafted(layout, from, to.spec().grid, rotations, reaches[i], stays_near),
+                        the_same, std::numeric_limits<double>::infinity());
   });
   return layouts[1].cost < layouts[0].cost ? layouts[1] : layouts[0];
 }
