@@ -6,6 +6,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 namespace packmerger {
 
@@ -15,6 +16,33 @@ template <typename Body>
 void parallel_for(std::size_t count, const Body& body) {
   tbb::parallel_for(std::size_t{0}, count, body);
 }
+
+// Work that goes on beside the caller's, on threads that parallel_for leaves idle.
+class Beside {
+ public:
+  Beside() = default;
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+  // Ends what has not begun and waits for the rest; what it threw is lost.
+  ~Beside() {
+    group_.cancel();
+    try {
+      group_.wait();
+    } catch (...) {  // the caller is leaving on an error of its own
+    }
+  }
+
+  // work must stay valid until wait() or the end.
+  template <typename Work>
+  void run(const Work& work) {
+    group_.run(work);
+  }
+  // Waits for all of it, and re-throws what one of it threw.
+  void wait() { group_.wait(); }
+
+ private:
+  tbb::task_group group_;
+};
 
 // While alive, at most `threads` threads are used by parallel_for. For tests and --threads.
 class ThreadLimit {

@@ -154,16 +154,21 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   const std::vector<LoadedModel> loaded = timed(times, "load", [&] {
     return load_models(options.models, options.sizing, warnings, progress);
   });
+  // Dividing and packing work on one core some of the time; the other ways up are tried beside
+  // them.
+  const Progress silent({}, progress.cancelled());
+  WholeModels shells;
+  Beside beside;
+  beside.run([&] { plan.solid = stand_best(surfaces_of(loaded), profile, silent); });
   const DividedModels models = timed(
       times, "divide", [&] { return divide_all(loaded, profile, options, warnings, progress); });
   record(plan.job, loaded, models);
-
+  shells = shells_of(models, profile, options, warnings, progress);
+  beside.run([&] { plan.hollow = stand_best(shells, profile, silent); });
   timed(times, "pack", [&] { pack_into(plan, models, profile, options, progress); });
   timed(times, "estimate", [&] {
     progress.report("estimating", 0);
-    plan.solid = stand_best(surfaces_of(loaded), profile, progress);
-    plan.hollow =
-        stand_best(shells_of(models, profile, options, warnings, progress), profile, progress);
+    beside.wait();
     compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), profile, progress);
   });
 

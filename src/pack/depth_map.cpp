@@ -191,8 +191,10 @@ class Rasterizer {
     const double high = std::max({a.z, b.z, c.z});
     const double slope_x = -normal.x() / normal.z();
     const double slope_y = -normal.y() / normal.z();
-    const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
-    const std::uint8_t hangs = in_mm.z() < normal_limit_ * in_mm.norm();
+    const auto hangs = [&] {
+      const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
+      return static_cast<std::uint8_t>(in_mm.z() < normal_limit_ * in_mm.norm() ? 1 : 0);
+    };
     const SortedTriangle<&CellPoint::y, &CellPoint::x> sorted(a, b, c);
     const int end = centres_up_to(sorted.last->y);
     for (int row = centres_up_to(sorted.first->y); row < end; ++row) {
@@ -207,10 +209,12 @@ class Rasterizer {
     }
   }
 
-  void enter_centre(std::size_t cell, float z, std::uint8_t hangs) {
+  // hangs() is asked for the lowest only.
+  template <typename Hangs>
+  void enter_centre(std::size_t cell, float z, const Hangs& hangs) {
     maps_.roof[cell] = std::max(maps_.roof[cell], z);
     if (z > maps_.bottom[cell]) return;
-    maps_.hangs[cell] = z < maps_.bottom[cell] ? hangs : maps_.hangs[cell] | hangs;
+    maps_.hangs[cell] = z < maps_.bottom[cell] ? hangs() : maps_.hangs[cell] | hangs();
     maps_.bottom[cell] = z;
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
@@ -11,22 +12,6 @@
 
 namespace packmerger {
 namespace {
-
-using Tree = fcl::BVHModel<fcl::OBBRSSd>;
-
-std::shared_ptr<Tree> tree_of(const Mesh& mesh) {
-  const TriangleSoup soup = to_soup(mesh);
-  std::vector<fcl::Triangle> triangles;
-  triangles.reserve(soup.triangles.size());
-  for (const auto& [a, b, c] : soup.triangles)
-    triangles.emplace_back(static_cast<std::size_t>(a), static_cast<std::size_t>(b),
-                           static_cast<std::size_t>(c));
-  auto tree = std::make_shared<Tree>();
-  tree->beginModel();
-  tree->addSubModel(soup.points, triangles);
-  tree->endModel();
-  return tree;
-}
 
 // The solid angle of all faces seen from p over 4π: 1 within the matter, 0 outside of it.
 double winding(const Mesh& mesh, const Vec3& p) {
@@ -68,30 +53,58 @@ bool lies_within(const Mesh& inner, const Mesh& outer) {
   return false;
 }
 
-double surface_distance(const Tree& a, const Tree& b, double enough) {
+}  // namespace
+
+struct MovableSurface::Tree {
+  fcl::BVHModel<fcl::OBBRSSd> triangles;
+};
+
+MovableSurface::MovableSurface(const Mesh& mesh) {
+  TriangleSoup soup = to_soup(mesh);
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(soup.triangles.size());
+  for (const auto& [a, b, c] : soup.triangles)
+    triangles.emplace_back(static_cast<std::size_t>(a), static_cast<std::size_t>(b),
+                           static_cast<std::size_t>(c));
+  auto tree = std::make_shared<Tree>();
+  tree->triangles.beginModel();
+  tree->triangles.addSubModel(soup.points, triangles);
+  tree->triangles.endModel();
+  tree_ = std::move(tree);
+  points_ = std::move(soup.points);
+}
+
+Box3 MovableSurface::box(const Pose& at) const {
+  Box3 box;
+  for (const Vec3& point : points_) box.extend(at * point);
+  return box;
+}
+
+double surface_distance_mm(const MovableSurface& a, const Pose& at_a, const MovableSurface& b,
+                           const Pose& at_b, double enough) {
   fcl::DistanceRequestd request;
   fcl::DistanceResultd result;
   // What is known already: branches that are further apart are skipped.
   result.min_distance = std::min(enough, std::numeric_limits<double>::max());
-  const fcl::Transform3d here = fcl::Transform3d::Identity();
-  return std::clamp(fcl::distance(&a, here, &b, here, request, result), 0.0, enough);
+  return std::clamp(
+      fcl::distance(&a.tree_->triangles, at_a, &b.tree_->triangles, at_b, request, result), 0.0,
+      enough);
 }
-
-}  // namespace
 
 double least_gap_mm(const std::vector<Mesh>& parts, double enough) {
   std::vector<Box3> boxes;
-  std::vector<std::shared_ptr<Tree>> trees(parts.size());
+  std::vector<std::optional<MovableSurface>> surfaces(parts.size());
   for (const Mesh& part : parts) boxes.push_back(bounding_box(part));
-  const auto tree = [&](std::size_t i) {
-    if (!trees[i]) trees[i] = tree_of(parts[i]);
-    return trees[i];
+  const auto surface = [&](std::size_t i) -> const MovableSurface& {
+    if (!surfaces[i]) surfaces[i].emplace(parts[i]);
+    return *surfaces[i];
   };
+  const Pose here = Pose::Identity();
   double least = enough;
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (std::size_t j = i + 1; j < parts.size(); ++j) {
       if (boxes[i].exteriorDistance(boxes[j]) >= least) continue;
-      least = std::min(least, surface_distance(*tree(i), *tree(j), least));
+      least = std::min(least, surface_distance_mm(surface(i), here, surface(j), here, least));
       if (least <= 0) return 0;
       if (boxes[i].intersects(boxes[j]) &&
           (lies_within(parts[i], parts[j]) || lies_within(parts[j], parts[i])))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "model/mesh.h"
@@ -13,5 +14,24 @@ namespace packmerger {
 // `enough` are not told from one another: the answer is then some value not below `enough`.
 double least_gap_mm(const std::vector<Mesh>& parts,
                     double enough = std::numeric_limits<double>::infinity());
+
+// A closed surface that is looked at in several poses.
+class MovableSurface {
+ public:
+  explicit MovableSurface(const Mesh& mesh);
+
+  Box3 box(const Pose& at) const;
+
+  // The least distance between points of two surfaces, mm: 0 where they intersect, but not where
+  // one lies within the other. Told up to `enough`. Thread-safe.
+  friend double surface_distance_mm(const MovableSurface& a, const Pose& at_a,
+                                    const MovableSurface& b, const Pose& at_b, double enough);
+
+ private:
+  struct Tree;
+
+  std::vector<Vec3> points_;
+  std::shared_ptr<const Tree> tree_;
+};
 
 }  // namespace packmerger

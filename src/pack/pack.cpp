@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
-#include "pack/columns.h"
-#include "pack/exact_gap.h"
+#include "pack/exact_figures.h"
 #include "pack/rearrange.h"
 #include "pack/refine.h"
 #include "pack/search.h"
+#include "pack/settle.h"
 
 namespace packmerger {
 namespace {
@@ -54,61 +54,6 @@ void check_settings(const PackProblem& problem) {
   for (const PackItem& item : problem.items)
     if (bounding_box(item.surface).sizes().norm() / cell_mm > kMostCellsAcross)
       refuse("The packer's grid is too fine for a model of this size", "Set a larger grid_mm.");
-}
-
-Mesh placed_mesh(const PackProblem& problem, const PlacedPart& part) {
-  std::vector<const Mesh*> members;
-  for (const int item : part.items)
-    members.push_back(&problem.items[static_cast<std::size_t>(item)].surface);
-  Mesh all;
-  for (const Mesh* member : members) {
-    std::vector<Mesh::VertexHandle> handles;
-    for (const auto vertex : member->vertices())
-      handles.push_back(all.add_vertex(part.pose * member->point(vertex)));
-    for (const auto face : member->faces()) {
-      std::vector<Mesh::VertexHandle> corner;
-      for (const auto vertex : member->fv_range(face))
-        corner.push_back(handles[static_cast<std::size_t>(vertex.idx())]);
-      all.add_face(corner);
-    }
-  }
-  return all;
-}
-
-// Rounding of poses may push a part out of the tray by a hair.
-void keep_inside(PlacedPart& part, const PackProblem& problem) {
-  for (int round = 0; round < 2; ++round) {
-    const Box3 box = bounding_box(placed_mesh(problem, part));
-    const Vec3 under = (-box.min()).cwiseMax(0.0);
-    const Vec3 over = (box.max() - problem.build_mm).cwiseMax(0.0);
-    part.pose.translation() += under - over;
-  }
-}
-
-// The exact figures of every tray, and the cost that follows from them.
-void measure(const PackProblem& problem, Packing& packing) {
-  int trays = 0;
-  for (const PlacedPart& part : packing.parts) trays = std::max(trays, part.tray + 1);
-  packing.trays.assign(static_cast<std::size_t>(trays), {});
-  packing.cost = 0;
-  for (int tray = 0; tray < trays; ++tray) {
-    TrayMeasure& figures = packing.trays[static_cast<std::size_t>(tray)];
-    std::vector<TriangleSoup> surfaces;
-    Box3 box;
-    for (const PlacedPart& part : packing.parts) {
-      if (part.tray != tray) continue;
-      surfaces.push_back(to_soup(placed_mesh(problem, part)));
-      for (const Vec3& point : surfaces.back().points) box.extend(point);
-      for (const int item : part.items)
-        figures.material_mm3 += problem.items[static_cast<std::size_t>(item)].volume_mm3;
-      ++figures.parts;
-    }
-    figures.size_mm = Vec3(box.sizes().x(), box.sizes().y(), box.max().z());
-    const ColumnSupport support =
-        column_support(surfaces, problem.grid_mm / 2, problem.support_angle, 0);
-    figures.support_mm3 = support.below + support.inside;
-    packing.cost += problem.cost.evaluate(figures);
-  }
 }
 
 // Stands in the tray's corner.
@@ -200,17 +145,6 @@ class Finisher {
   Workshop finest_;
 };
 
-double least_gap_mm(const Packing& packing, const PackProblem& problem) {
-  double least = problem.gap_mm + 1;
-  for (int tray = 0; tray < static_cast<int>(packing.trays.size()); ++tray) {
-    std::vector<Mesh> meshes;
-    for (const PlacedPart& part : packing.parts)
-      if (part.tray == tray) meshes.push_back(placed_mesh(problem, part));
-    least = std::min(least, least_gap_mm(meshes, least));
-  }
-  return least;
-}
-
 // The maps bound the meshes, so this finds nothing to do but where rounding lost more than was
 // allowed for; then the layout is finished again with that much more room.
 Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
@@ -225,6 +159,14 @@ Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
   throw Error(Fault::kInternal,
               fmt::format("The parts could not be kept {} mm apart", problem.gap_mm),
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
+}
+
+// Brought closer together on the meshes themselves, where that is cheaper.
+Packing settle(const PackProblem& problem, Packing packing, Pace& pace) {
+  Packing closer = settled(problem, packing, pace);
+  measure(problem, closer);
+  const bool kept = problem.gap_mm - least_gap_mm(closer, problem) <= kGapTolerance_mm;
+  return kept && closer.cost < packing.cost ? closer : packing;
 }
 
 // With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
@@ -297,6 +239,7 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
       chosen = i;
   Packing best = with_gaps_kept(layouts[chosen], searching.spec.grid, std::move(packings[chosen]),
                                 problem, pace);
+  best = settle(problem, std::move(best), pace);
   if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;

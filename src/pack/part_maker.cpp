@@ -13,8 +13,8 @@ namespace packmerger {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 2;
-constexpr int kColumnsAcross = 64;  // enough to rank ways up
-constexpr int kSpreadWays = 60;     // about 29 degrees apart
+constexpr int kColumnsAcross = 64;       // enough to rank ways up
+constexpr std::size_t kSpreadWays = 60;  // about 29 degrees apart
 constexpr std::size_t kFlatWays = 8;
 constexpr std::size_t kMemberWays = 3;
 constexpr std::size_t kRefinedWays = 2;
@@ -143,25 +143,31 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
   std::vector<WayUp> ways;
   const auto add = [&](const Mat3& base) {
     tick_();
-    const auto turn = best_turn(shapes, base, rotation_set_.turns, problem_);
-    if (turn) ways.push_back(measured(part, shapes, base, *turn));
+    std::vector<TriangleSoup> standing;
+    for (const TriangleSoup& shape : shapes) standing.push_back(turned(shape, base));
+    const auto turn = best_turn(standing, rotation_set_.turns, problem_);
+    if (turn) ways.push_back(measured(part, standing, base, *turn));
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
   };
   for (const Mat3& base : rotation_set_.ways_up) add(base);
-  if (rotation_set_.ways_up.size() > 1) add_own_ways(part, add);
+  if (rotation_set_.ways_up.size() > 1) add_own_ways(part, ways, add);
   if (ways.empty()) {
-    const auto found = way_up_that_fits(shapes, problem_);
-    if (found) ways.push_back(measured(part, shapes, found->rotation, {0, found->size_mm}));
+    if (const auto found = way_up_that_fits(shapes, problem_)) {
+      std::vector<TriangleSoup> standing;
+      for (const TriangleSoup& shape : shapes) standing.push_back(turned(shape, found->rotation));
+      ways.push_back(measured(part, standing, found->rotation, {0, found->size_mm}));
+    }
   }
   std::stable_sort(ways.begin(), ways.end(),
                    [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
   return ways;
 }
 
-// Beside the rotation set: the part's own best ways up, which no fixed step hits. Directions spread
-// over the sphere, the best of them refined, and large flat facets, as cuts leave them; a merged
-// part takes its members' best.
-void PartMaker::add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add) {
+// Beside the rotation set: the part's own best ways up, which no fixed step hits. Large flat
+// facets, as cuts leave them, directions spread over the sphere where the set is sparse, and the
+// best of all refined; a merged part takes its members' best.
+void PartMaker::add_own_ways(const Part& part, const std::vector<WayUp>& ways,
+                             const std::function<double(const Mat3&)>& add) {
   if (part.items.size() > 1) {
     for (const int item : part.items) {
       const Part* member = make({item});
@@ -171,8 +177,10 @@ void PartMaker::add_own_ways(const Part& part, const std::function<double(const 
     return;
   }
   for (const Mat3& base : ways_on_flat_facets(surfaces(part.items), kFlatWays)) add(base);
+  if (rotation_set_.ways_up.size() < kSpreadWays)
+    for (const Mat3& base : spread_ways(kSpreadWays)) add(base);
   std::vector<std::pair<double, Mat3>> tried;
-  for (const Mat3& base : spread_ways(kSpreadWays)) tried.emplace_back(add(base), base);
+  for (const WayUp& way : ways) tried.emplace_back(way.cost, way.base);
   std::stable_sort(tried.begin(), tried.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   const std::size_t refined = std::min(tried.size(), kRefinedWays);
@@ -187,26 +195,23 @@ void PartMaker::add_own_ways(const Part& part, const std::function<double(const 
   }
 }
 
-WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& shapes,
-                          const Mat3& base, const Turn& turn) {
+WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& standing,
+                          const Mat3& base, const Turn& turn) const {
   WayUp way{base, turn.turn, 0, 0, 0, turn.size_mm};
   if (problem_.support_angle <= 0) {
     std::vector<DepthMaps> members;
     std::vector<const DepthMaps*> all;
-    for (const TriangleSoup& shape : shapes)
-      members.push_back(draw_centre_maps(turned(shape, base), grid_.cell_mm, 0));
+    for (const TriangleSoup& surface : standing)
+      members.push_back(draw_centre_maps(surface, grid_.cell_mm, 0));
     for (const DepthMaps& member : members) all.push_back(&member);
     const EnvelopeSupport support =
         envelope_support(united_maps(all), part.volume_mm3, grid_.cell_mm);
     way.support_mm3 = support.below_mm3 + support.inside_mm3;
     way.inside_support_mm3 = support.inside_mm3;
   } else {
-    std::vector<TriangleSoup> standing;
     Box3 box;
-    for (const TriangleSoup& shape : shapes) {
-      standing.push_back(turned(shape, base));
-      for (const Vec3& point : standing.back().points) box.extend(point);
-    }
+    for (const TriangleSoup& surface : standing)
+      for (const Vec3& point : surface.points) box.extend(point);
     const double step = std::max(grid_.cell_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
     const ColumnSupport support =
         column_support(standing, step, problem_.support_angle, box.min().z());

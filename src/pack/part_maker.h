@@ -61,9 +61,10 @@ class PartMaker {
   // for one layout, and fine ones are large.
   std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation);
   std::vector<WayUp> ways_of(const Part& part);
-  void add_own_ways(const Part& part, const std::function<double(const Mat3&)>& add);
-  WayUp measured(const Part& part, const std::vector<TriangleSoup>& shapes, const Mat3& base,
-                 const Turn& turn);
+  void add_own_ways(const Part& part, const std::vector<WayUp>& ways,
+                    const std::function<double(const Mat3&)>& add);
+  WayUp measured(const Part& part, const std::vector<TriangleSoup>& standing, const Mat3& base,
+                 const Turn& turn) const;
   std::vector<TriangleSoup> surfaces(const ItemSet& items) const;
 
   const PackProblem& problem_;

@@ -52,13 +52,33 @@ bool fits(const Vec3& size_mm, const Vec3& build_mm) {
   return excess(size_mm, build_mm) <= kFitTolerance_mm;
 }
 
-std::optional<Turn> best_turn(const std::vector<TriangleSoup>& surfaces, const Mat3& base,
+std::optional<Turn> best_turn(const std::vector<TriangleSoup>& standing,
                               const std::vector<double>& turns, const PackProblem& problem) {
+  Box3 box;
+  Eigen::Index count = 0;
+  for (const TriangleSoup& surface : standing)
+    count += static_cast<Eigen::Index>(surface.points.size());
+  Eigen::ArrayXd xs(count);
+  Eigen::ArrayXd ys(count);
+  Eigen::Index next = 0;
+  for (const TriangleSoup& surface : standing)
+    for (const Vec3& point : surface.points) {
+      box.extend(point);
+      xs[next] = point.x();
+      ys[next++] = point.y();
+    }
+  const auto extent = [](const Eigen::ArrayXd& along) {
+    return along.size() > 0 ? along.maxCoeff() - along.minCoeff() : 0;
+  };
   // Support hardly depends on the turn; the box does, so the cheapest box decides.
   std::optional<Turn> best;
   double least = 0;
   for (const double turn : turns) {
-    const Vec3 size = size_turned(surfaces, turn_about_z(turn) * base);
+    const Mat3 about_z = turn_about_z(turn);
+    const double cosine = about_z(0, 0);
+    const double sine = about_z(1, 0);
+    const Vec3 size(extent(cosine * xs - sine * ys), extent(sine * xs + cosine * ys),
+                    box.sizes().z());
     if (!fits(size, problem.build_mm)) continue;
     const double cost = problem.cost.evaluate({size, 0, 0, 1});
     if (best && cost >= least - 1e-9 * std::abs(least)) continue;

@@ -24,9 +24,9 @@ struct Turn {
   Vec3 size_mm = Vec3::Zero();
 };
 
-// The turn about the vertical in which the surfaces together, standing as base says, fit the build
-// volume at the least cost of their box; of equal ones the first. Empty where none fits.
-std::optional<Turn> best_turn(const std::vector<TriangleSoup>& surfaces, const Mat3& base,
+// The turn about the vertical in which the surfaces together, standing as they are given, fit the
+// build volume at the least cost of their box; of equal ones the first. Empty where none fits.
+std::optional<Turn> best_turn(const std::vector<TriangleSoup>& standing,
                               const std::vector<double>& turns, const PackProblem& problem);
 
 struct FittingWay {

@@ -19,6 +19,7 @@ void add_figures(CLI::App& program);
 
 // Mixed small parts on a square base at the least height, against the paper's packer.
 void add_mixed(CLI::App& program);
+void add_nested(CLI::App& program);
 
 // The paper's packer, simple and slow, on a model's segments.
 void add_reference(CLI::App& program);

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   packmerger::bench::add_cuts(program);
   packmerger::bench::add_kernels(program);
   packmerger::bench::add_mixed(program);
+  packmerger::bench::add_nested(program);
   packmerger::bench::add_partitions(program);
   packmerger::bench::add_figures(program);
   packmerger::bench::add_pack(program);

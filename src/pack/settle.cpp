@@ -1,0 +1,151 @@
+#include "pack/settle.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "pack/exact_figures.h"
+#include "pack/exact_gap.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kFirstStep_mm = 0.25;
+constexpr double kLeastStep_mm = 0.005;
+constexpr std::array<double, 3> kSideways_mm{0.2, 0.1, 0.05};
+constexpr int kTriesEach = 3;             // of a sideways step, while it helps
+constexpr double kWorthMoving_mm = 0.01;  // sunk deeper
+// Kept where no gap is asked for: at 0 a touch is not told from a cut.
+constexpr double kLeastApart_mm = 1e-4;
+
+struct Body {
+  Body(const PackProblem& problem, const PlacedPart& part)
+      : surface(part_mesh(problem, part)),
+        pose(part.pose),
+        box(surface.box(part.pose)),
+        tray(part.tray) {}
+
+  MovableSurface surface;
+  Pose pose;
+  Box3 box;
+  int tray;
+};
+
+// A pose that was tried and the box there.
+struct Tried {
+  Pose pose;
+  Box3 box;
+};
+
+class Settler {
+ public:
+  Settler(const PackProblem& problem, const Packing& packing, Pace& pace)
+      : problem_(problem),
+        pace_(pace),
+        gap_mm_(std::max(problem.gap_mm, kLeastApart_mm)),
+        sideways_mm_(problem.gap_mm / 2 - kLeastStep_mm) {
+    for (const PlacedPart& part : packing.parts) bodies_.emplace_back(problem, part);
+  }
+
+  // Lowers a part, then moves it about while it sinks deeper. Returns where it ends.
+  Pose settle(std::size_t index) {
+    Body& body = bodies_[index];
+    Tried here = lowered(index, {body.pose, body.box});
+    double left_mm = sideways_mm_;
+    for (const double step : kSideways_mm)
+      for (int i = 0; i < kTriesEach && step <= left_mm && may_sink(here); ++i) {
+        std::optional<Tried> deeper = moved_about(index, here, step);
+        if (!deeper) break;
+        here = std::move(*deeper);
+        left_mm -= step;
+      }
+    body.pose = here.pose;
+    body.box = here.box;
+    return here.pose;
+  }
+
+ private:
+  bool may_sink(const Tried& at) const {
+    return at.box.min().z() > kLeastStep_mm && pace_.passed() < 1;
+  }
+
+  bool is_clear(std::size_t index, const Tried& at) const {
+    if (at.box.min().minCoeff() < 0 || (problem_.build_mm - at.box.max()).minCoeff() < 0)
+      return false;
+    const Body& body = bodies_[index];
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Body& other = bodies_[i];
+      if (i == index || other.tray != body.tray) continue;
+      if (at.box.exteriorDistance(other.box) >= gap_mm_) continue;
+      pace_.tick();
+      if (surface_distance_mm(body.surface, at.pose, other.surface, other.pose, gap_mm_) < gap_mm_)
+        return false;
+    }
+    return true;
+  }
+
+  static Tried shifted(const Tried& from, const Vec3& by) {
+    return {Eigen::Translation3d(by) * from.pose, from.box.translated(by)};
+  }
+
+  // Straight down, by steps that are halved where the way is barred.
+  Tried lowered(std::size_t index, Tried at) const {
+    for (double step = kFirstStep_mm; step > kLeastStep_mm && may_sink(at);) {
+      Tried next = shifted(at, Vec3(0, 0, -std::min(step, at.box.min().z())));
+      if (is_clear(index, next))
+        at = std::move(next);
+      else
+        step /= 2;
+    }
+    return at;
+  }
+
+  // Moved by at most step_mm at any point, and raised by that much, then lowered: the deepest.
+  std::optional<Tried> moved_about(std::size_t index, const Tried& from, double step_mm) const {
+    const double angle = step_mm / (from.box.sizes().norm() / 2);
+    std::vector<Pose> motions;
+    for (const double sign : {1.0, -1.0}) {
+      for (const int axis : {0, 1})
+        motions.emplace_back(Eigen::Translation3d(sign * step_mm * Vec3::Unit(axis)));
+      for (const int axis : {0, 1, 2})
+        motions.emplace_back(Eigen::Translation3d(from.box.center()) *
+                             Eigen::AngleAxisd(sign * angle, Vec3::Unit(axis)) *
+                             Eigen::Translation3d(-from.box.center()));
+    }
+    std::vector<std::optional<Tried>> found(motions.size());
+    parallel_for(motions.size(), [&](std::size_t i) {
+      Tried moved{Eigen::Translation3d(0, 0, step_mm) * motions[i] * from.pose, {}};
+      moved.box = bodies_[index].surface.box(moved.pose);
+      if (is_clear(index, moved)) found[i] = lowered(index, std::move(moved));
+    });
+    std::optional<Tried> deepest;
+    double top = from.box.max().z() - kWorthMoving_mm;
+    for (std::optional<Tried>& one : found) {
+      if (!one || one->box.max().z() >= top) continue;
+      top = one->box.max().z();
+      deepest = std::move(one);
+    }
+    return deepest;
+  }
+
+  const PackProblem& problem_;
+  Pace& pace_;
+  double gap_mm_;
+  double sideways_mm_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace
+
+Packing settled(const PackProblem& problem, Packing packing, Pace& pace) {
+  Settler settler(problem, packing, pace);
+  for (std::size_t i = 0; i < packing.parts.size(); ++i) {
+    packing.parts[i].pose = settler.settle(i);
+    keep_inside(packing.parts[i], problem);
+  }
+  return packing;
+}
+
+}  // namespace packmerger
