@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "model/estimate.h"
 #include "printers/estimate.h"
 #include "printers/fdm_toolpath.h"
 #include "printers/polyjet.h"
@@ -68,12 +67,9 @@ double printer_cost(const Profile& profile, const TrayMeasure& tray) {
   const TrayEstimate predicted = profile.technology == Technology::kPolyjet
                                      ? predict_polyjet(profile, tray)
                                      : predict_fdm(profile, tray);
-  Estimate money;
-  money.time_s = predicted.time_s;
-  money.model_g = predicted.model_g;
-  money.support_g = predicted.support_g;
-  price(money, profile, Assembly{tray.parts, std::max(0, tray.parts - 1)});
-  return money.cost;
+  const Assembly assembly{tray.parts, std::max(0, tray.parts - 1)};
+  return price_of(profile.cost, predicted.model_g, predicted.support_g, predicted.time_s,
+                  labour_min(profile.cost, assembly, 1));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
@@ -15,6 +16,18 @@ namespace packmerger {
 template <typename Body>
 void parallel_for(std::size_t count, const Body& body) {
   tbb::parallel_for(std::size_t{0}, count, body);
+}
+
+// The same for a few long bodies: each may be taken by another thread by itself, where
+// parallel_for hands out neighbours together.
+template <typename Body>
+void parallel_tasks(std::size_t count, const Body& body) {
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, 1),
+      [&body](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+      },
+      tbb::simple_partitioner());
 }
 
 // Work that goes on beside the caller's, on threads that parallel_for leaves idle.

@@ -87,7 +87,7 @@ std::vector<Candidate> candidates_of(const Divided& whole, const Profile& profil
   const Progress silent({}, progress.cancelled());  // several report at once
   std::atomic<std::size_t> ready = 0;
   progress.report("choosing a division", 0);
-  parallel_for(candidates.size(), [&](std::size_t i) {
+  parallel_tasks(candidates.size(), [&](std::size_t i) {
     candidates[i] = candidate_of(whole, i == 0 ? nullptr : &plans[i - 1], profile, seed, silent);
     progress.report("choosing a division",
                     static_cast<double>(++ready) / static_cast<double>(candidates.size()));

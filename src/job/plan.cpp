@@ -103,7 +103,7 @@ void compare_ways(Plan& plan, std::optional<Arrangement> as_is, const Profile& p
                         {plan.solid, comparison.solid}};
   if (!stands_best) ways.push_back({as_is, comparison.as_is});
   std::atomic<int> done{0};
-  parallel_for(ways.size(), [&](std::size_t i) {
+  parallel_tasks(ways.size(), [&](std::size_t i) {
     ways[i].estimate = estimate_of(ways[i].way, profile, progress);
     progress.report("estimating", 0.2 + 0.8 * ++done / static_cast<double>(ways.size()));
   });

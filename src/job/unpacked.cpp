@@ -91,7 +91,7 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
   const std::vector<Mat3> ways = ways_up();
   using Rank = std::tuple<double, double, std::size_t>;  // cost, time, index
   std::vector<Rank> ranks(ways.size(), {std::numeric_limits<double>::infinity(), 0, 0});
-  parallel_for(ways.size(), [&](std::size_t i) {
+  parallel_tasks(ways.size(), [&](std::size_t i) {
     const Box3 box = turned_box(model, ways[i]);
     if (!fits(box.sizes(), profile.build())) return;
     Tray tray;

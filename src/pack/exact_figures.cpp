@@ -6,6 +6,11 @@
 #include "pack/exact_gap.h"
 
 namespace packmerger {
+namespace {
+
+constexpr double kTold_mm = 0.1;  // above the gap asked for: what lies further apart is not told
+
+}  // namespace
 
 Mesh part_mesh(const PackProblem& problem, const PlacedPart& part) {
   std::vector<const Mesh*> members;
@@ -53,7 +58,7 @@ void measure(const PackProblem& problem, Packing& packing) {
 }
 
 double least_gap_mm(const Packing& packing, const PackProblem& problem) {
-  double least = problem.gap_mm + 1;
+  double least = problem.gap_mm + kTold_mm;
   for (int tray = 0; tray < static_cast<int>(packing.trays.size()); ++tray) {
     std::vector<Mesh> meshes;
     for (const PlacedPart& part : packing.parts)

@@ -17,8 +17,8 @@ void keep_inside(PlacedPart& part, const PackProblem& problem);
 // Enters the figures of every tray, and the cost that follows from them.
 void measure(const PackProblem& problem, Packing& packing);
 
-// The least distance between two parts of one tray, mm, told up to a millimetre above the gap that
-// is asked for.
+// The least distance between two parts of one tray, mm, told up to a tenth of a millimetre above
+// the gap that is asked for.
 double least_gap_mm(const Packing& packing, const PackProblem& problem);
 
 }  // namespace packmerger

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "base/parallel.h"
+
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/distance.h>
@@ -93,24 +95,29 @@ double surface_distance_mm(const MovableSurface& a, const Pose& at_a, const Mova
 
 double least_gap_mm(const std::vector<Mesh>& parts, double enough) {
   std::vector<Box3> boxes;
-  std::vector<std::optional<MovableSurface>> surfaces(parts.size());
   for (const Mesh& part : parts) boxes.push_back(bounding_box(part));
-  const auto surface = [&](std::size_t i) -> const MovableSurface& {
-    if (!surfaces[i]) surfaces[i].emplace(parts[i]);
-    return *surfaces[i];
-  };
-  const Pose here = Pose::Identity();
-  double least = enough;
+  std::vector<std::pair<std::size_t, std::size_t>> near;
+  std::vector<bool> is_near(parts.size(), false);
   for (std::size_t i = 0; i < parts.size(); ++i)
-    for (std::size_t j = i + 1; j < parts.size(); ++j) {
-      if (boxes[i].exteriorDistance(boxes[j]) >= least) continue;
-      least = std::min(least, surface_distance_mm(surface(i), here, surface(j), here, least));
-      if (least <= 0) return 0;
-      if (boxes[i].intersects(boxes[j]) &&
-          (lies_within(parts[i], parts[j]) || lies_within(parts[j], parts[i])))
-        return 0;
-    }
-  return least;
+    for (std::size_t j = i + 1; j < parts.size(); ++j)
+      if (boxes[i].exteriorDistance(boxes[j]) < enough) {
+        near.emplace_back(i, j);
+        is_near[i] = is_near[j] = true;
+      }
+  std::vector<std::optional<MovableSurface>> surfaces(parts.size());
+  parallel_tasks(parts.size(), [&](std::size_t i) {
+    if (is_near[i]) surfaces[i].emplace(parts[i]);
+  });
+  const Pose here = Pose::Identity();
+  std::vector<double> gaps(near.size());
+  parallel_tasks(near.size(), [&](std::size_t k) {
+    const auto& [i, j] = near[k];
+    gaps[k] = surface_distance_mm(*surfaces[i], here, *surfaces[j], here, enough);
+    if (gaps[k] > 0 && boxes[i].intersects(boxes[j]) &&
+        (lies_within(parts[i], parts[j]) || lies_within(parts[j], parts[i])))
+      gaps[k] = 0;
+  });
+  return gaps.empty() ? enough : *std::min_element(gaps.begin(), gaps.end());
 }
 
 }  // namespace packmerger

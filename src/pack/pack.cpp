@@ -1,6 +1,7 @@
 #include "pack/pack.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -145,28 +146,29 @@ class Finisher {
   Workshop finest_;
 };
 
-// The maps bound the meshes, so this finds nothing to do but where rounding lost more than was
-// allowed for; then the layout is finished again with that much more room.
+// Settled, where that is cheaper.
+Packing closer(const PackProblem& problem, Packing packing, Pace& pace) {
+  Packing close = settled(problem, packing, pace);
+  measure(problem, close);
+  return close.cost < packing.cost ? close : packing;
+}
+
+// The answer, its gaps checked on the meshes. The maps bound those, so there is nothing to repair
+// but where rounding lost more than was allowed for; then the layout is finished again with that
+// much more room.
 Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
                        const PackProblem& problem, Pace& pace) {
   double margin = 0;
   for (int repair = 0; repair < kRepairs; ++repair) {
-    const double missing = problem.gap_mm - least_gap_mm(packing, problem);
-    if (missing <= kGapTolerance_mm) return packing;
+    Packing close = closer(problem, packing, pace);
+    const double missing = problem.gap_mm - least_gap_mm(close, problem);
+    if (missing <= kGapTolerance_mm) return close;
     margin += 1.5 * missing + 0.01;
     packing = Finisher(problem, grid, margin, pace).finished(layout);
   }
   throw Error(Fault::kInternal,
               fmt::format("The parts could not be kept {} mm apart", problem.gap_mm),
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
-}
-
-// Brought closer together on the meshes themselves, where that is cheaper.
-Packing settle(const PackProblem& problem, Packing packing, Pace& pace) {
-  Packing closer = settled(problem, packing, pace);
-  measure(problem, closer);
-  const bool kept = problem.gap_mm - least_gap_mm(closer, problem) <= kGapTolerance_mm;
-  return kept && closer.cost < packing.cost ? closer : packing;
 }
 
 // With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
@@ -193,7 +195,7 @@ Packing put_under(const PackProblem& problem, Packing dropped, PartMaker& maker,
 }
 
 void make_items(const PackProblem& problem, PartMaker& maker) {
-  parallel_for(problem.items.size(), [&](std::size_t i) {
+  parallel_tasks(problem.items.size(), [&](std::size_t i) {
     if (!maker.make({static_cast<int>(i)})) refuse(problem.items[i], i + 1, problem);
   });
 }
@@ -225,10 +227,11 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
 
   Finisher finisher(problem, searching.spec.grid, 0, pace);
   std::vector<Packing> packings(layouts.size());
-  for (std::size_t i = 0; i < layouts.size(); ++i) {
+  std::atomic<std::size_t> ready = 0;
+  parallel_tasks(layouts.size(), [&](std::size_t i) {
     packings[i] = finisher.finished(layouts[i]);
-    pace.reached(0.8 + 0.15 * static_cast<double>(i + 1) / static_cast<double>(layouts.size()));
-  }
+    pace.reached(0.8 + 0.15 * static_cast<double>(++ready) / static_cast<double>(layouts.size()));
+  });
   const auto cheapest =
       std::min_element(packings.begin(), packings.end(),
                        [](const Packing& a, const Packing& b) { return a.cost < b.cost; });
@@ -239,7 +242,6 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
       chosen = i;
   Packing best = with_gaps_kept(layouts[chosen], searching.spec.grid, std::move(packings[chosen]),
                                 problem, pace);
-  best = settle(problem, std::move(best), pace);
   if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;

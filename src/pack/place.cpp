@@ -200,13 +200,30 @@ class Scan {
     hunt.blocks.clear();
   }
 
-  void rate(Hunt& hunt, const FallBlock& block, const std::int32_t* sums) const {
+  // With more waste than this, no position of the block that lies at z or higher is worth a look.
+  // Sought from the last one on, which is about the same, and to a sixteenth.
+  std::int64_t waste_limit(const Hunt& hunt, const Range& xs, int y, Height z) {
+    const auto worth_it = [&](std::int64_t waste) {
+      return least_bound(xs, y, z, waste) <= hunt.dearest;
+    };
+    std::int64_t& limit = waste_limit_;
+    while (limit < kMostWaste && worth_it(limit)) limit += limit / 4 + 1;
+    while (limit > 0 && !worth_it(limit / 2)) limit /= 2;
+    while (limit > 0 && !worth_it(limit - limit / 16 - 1)) limit -= limit / 16 + 1;
+    return limit;
+  }
+
+  void rate(Hunt& hunt, const FallBlock& block, const std::int32_t* sums) {
     const std::size_t index = hunt.index_of(block);
     const Range& xs = hunt.xs[index];
+    const Height lowest = *std::min_element(block.heights, block.heights + xs.count());
+    std::int64_t most_waste = kMostWaste;
+    if (hunt.best) most_waste = waste_limit(hunt, xs, hunt.ys[index], lowest);
     for (int i = 0; i < xs.count(); ++i) {
       const Height z = block.heights[i];
       if (z > block.give_up_above) continue;
       const std::int64_t waste = rating_.waste(z, sums[i]);
+      if (waste > most_waste) continue;
       Spot here{rotation_, xs.first + i, hunt.ys[index], z, 0, 0};
       here.cost = rating_.cost(here.x, here.y, z, waste);
       if (hunt.best && !(rank(here) < rank(*hunt.best))) continue;
@@ -216,6 +233,7 @@ class Scan {
   }
 
   static constexpr Height kNoPosition = std::numeric_limits<Height>::max();
+  static constexpr std::int64_t kMostWaste = std::int64_t{1} << 40;
 
   const TrayState& tray_;
   const RotatedPart& part_;
@@ -228,6 +246,7 @@ class Scan {
   int least_x_ = 0;
   double bound_ = 0;
   std::vector<int> limits_;  // by block of a row
+  std::int64_t waste_limit_ = kMostWaste;
 };
 
 }  // namespace

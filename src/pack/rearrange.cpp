@@ -65,7 +65,7 @@ class Rearranger {
     std::vector<std::uint64_t> seeds(tries);
     for (std::uint64_t& one : seeds) one = random.bits();
     std::vector<std::optional<Arranged>> found(tries);
-    parallel_for(tries, [&](std::size_t i) {
+    parallel_tasks(tries, [&](std::size_t i) {
       Random own(seeds[i]);
       found[i] = own.below(kShakeOneIn) == 0 ? shaken(current) : moved(current, own);
     });

@@ -61,7 +61,7 @@ Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartM
   };
   const std::array<double, 2> reaches{0, reach_mm};
   std::array<Layout, 2> layouts;
-  parallel_for(reaches.size(), [&](std::size_t i) {
+  parallel_tasks(reaches.size(), [&](std::size_t i) {
     layouts[i] =
         *to.carried_out(drafted(layout, from, to.spec().grid, rotations, reaches[i], stays_near),
                         the_same, std::numeric_limits<double>::infinity());

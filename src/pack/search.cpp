@@ -75,7 +75,7 @@ class TabuSearch {
     };
     const std::vector<Draft> drafts{moves_.start(true, random_), moves_.start(false, random_)};
     std::vector<Layout> layouts(drafts.size());
-    parallel_for(drafts.size(), [&](std::size_t i) {
+    parallel_tasks(drafts.size(), [&](std::size_t i) {
       layouts[i] = *layouter_.carried_out(drafts[i], good, kInfinity);
     });
     return layouts[layouts[1].cost < layouts[0].cost ? 1 : 0];
@@ -129,7 +129,7 @@ class TabuSearch {
   std::vector<std::optional<Layout>> carried_out(const std::vector<Move>& moves) {
     std::vector<std::optional<Layout>> layouts(moves.size());
     std::atomic<double> least = kInfinity;
-    parallel_for(moves.size(), [&](std::size_t i) {
+    parallel_tasks(moves.size(), [&](std::size_t i) {
       pace_.tick();
       Random random(moves[i].seed);
       const RotationChoice some = [&](const Part& part) {

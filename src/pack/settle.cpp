@@ -46,7 +46,9 @@ class Settler {
         pace_(pace),
         gap_mm_(std::max(problem.gap_mm, kLeastApart_mm)),
         sideways_mm_(problem.gap_mm / 2 - kLeastStep_mm) {
-    for (const PlacedPart& part : packing.parts) bodies_.emplace_back(problem, part);
+    std::vector<std::optional<Body>> made(packing.parts.size());
+    parallel_tasks(made.size(), [&](std::size_t i) { made[i].emplace(problem, packing.parts[i]); });
+    for (std::optional<Body>& body : made) bodies_.push_back(std::move(*body));
   }
 
   // Lowers a part, then moves it about while it sinks deeper. Returns where it ends.
@@ -115,7 +117,7 @@ class Settler {
                              Eigen::Translation3d(-from.box.center()));
     }
     std::vector<std::optional<Tried>> found(motions.size());
-    parallel_for(motions.size(), [&](std::size_t i) {
+    parallel_tasks(motions.size(), [&](std::size_t i) {
       Tried moved{Eigen::Translation3d(0, 0, step_mm) * motions[i] * from.pose, {}};
       moved.box = bodies_[index].surface.box(moved.pose);
       if (is_clear(index, moved)) found[i] = lowered(index, std::move(moved));

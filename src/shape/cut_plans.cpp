@@ -141,7 +141,7 @@ std::vector<CutPlan> cut_plans(const TetMesh& mesh, const ShapeSettings& setting
   progress.report("planning cuts", 0.4);
   const std::vector<Chain> chains = chains_from(starts, rules);
   std::vector<Start> found(chains.size());
-  parallel_for(chains.size(), [&](std::size_t i) {
+  parallel_tasks(chains.size(), [&](std::size_t i) {
     const int tries = search.effort / static_cast<int>(chains.size());
     found[i] =
         improved(*samples, rules, fit, chains[i], tries, Random(seed + 1000 * (i + 1)), progress);

@@ -130,7 +130,7 @@ std::vector<Start> cut_starts(const MatterSamples& samples, const CutRules& rule
   }
 
   std::vector<std::vector<Start>> made(makers.size());
-  parallel_for(makers.size(), [&](std::size_t i) {
+  parallel_tasks(makers.size(), [&](std::size_t i) {
     CutBench bench(samples, rules, fit);
     made[i] = makers[i](bench);
   });

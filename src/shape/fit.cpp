@@ -73,7 +73,7 @@ std::vector<FitTest::Extents> FitTest::extents(const TetMesh& mesh,
     list.insert(list.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
   }
   std::vector<Extents> result(segments.count);
-  parallel_for(points.size(), [&](std::size_t label) {
+  parallel_tasks(points.size(), [&](std::size_t label) {
     std::vector<int>& list = points[label];
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());

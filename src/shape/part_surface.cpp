@@ -69,7 +69,7 @@ SegmentSurface part_surface(const TetMesh& mesh, const Segments& segments, int l
 std::vector<SegmentSurface> part_surfaces(const TetMesh& mesh, const Segments& segments) {
   const auto by_label = tetrahedra_by_label(segments);
   std::vector<SegmentSurface> surfaces(by_label.size());
-  parallel_for(by_label.size(), [&](std::size_t label) {
+  parallel_tasks(by_label.size(), [&](std::size_t label) {
     surfaces[label] =
         surface_of(mesh, segments.of_tetrahedron, by_label[label], static_cast<int>(label));
   });

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <set>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "model/stl.h"
 #include "picture/gltf.h"
 #include "picture/part_colour.h"
@@ -54,17 +57,25 @@ std::vector<TrayContent> contents(const Job& job, std::size_t trays) {
 
 std::string part_name(const JobPart& part) { return fmt::format("part {:02}", part.id); }
 
-void write_tray(const TrayContent& tray, int number, const fs::path& folder) {
-  std::vector<const Mesh*> placed;
-  std::vector<ThreeMfPart> objects;
-  for (std::size_t i = 0; i < tray.parts.size(); ++i) {
-    const JobPart& part = *tray.parts[i];
-    placed.push_back(&tray.placed[i]);
-    objects.push_back({part_name(part), &part.surface, part.pose, part_colour(part.id - 1)});
-    write_file_whole(folder / part_file(part.id), binary_stl({&tray.placed[i]}));
-  }
-  write_file_whole(folder / tray_file("tray", number, "stl"), binary_stl(placed));
-  write_file_whole(folder / tray_file("tray", number, "3mf"), three_mf_bytes(objects));
+using Writes = std::vector<std::function<void()>>;
+
+// tray and folder must outlive what is added to writes.
+void add_tray(const TrayContent& tray, int number, const fs::path& folder, Writes& writes) {
+  for (std::size_t i = 0; i < tray.parts.size(); ++i)
+    writes.emplace_back([&tray, &folder, i] {
+      write_file_whole(folder / part_file(tray.parts[i]->id), binary_stl({&tray.placed[i]}));
+    });
+  writes.emplace_back([&tray, &folder, number] {
+    std::vector<const Mesh*> placed;
+    for (const Mesh& part : tray.placed) placed.push_back(&part);
+    write_file_whole(folder / tray_file("tray", number, "stl"), binary_stl(placed));
+  });
+  writes.emplace_back([&tray, &folder, number] {
+    std::vector<ThreeMfPart> objects;
+    for (const JobPart* part : tray.parts)
+      objects.push_back({part_name(*part), &part->surface, part->pose, part_colour(part->id - 1)});
+    write_file_whole(folder / tray_file("tray", number, "3mf"), three_mf_bytes(objects));
+  });
 }
 
 // Trays after the first stand to its right, a tenth of a plate apart.
@@ -112,24 +123,28 @@ void write_job_folder(const Job& job, const std::vector<TrayFiles>& trays, const
   TemporaryFolder folder = TemporaryFolder::beside(out);
   fs::create_directory(folder.path() / "parts");
 
-  const double steps = static_cast<double>(trays.size()) + 2;
   const std::vector<TrayContent> all = contents(job, trays.size());
+  Writes writes{
+      [&] { write_file_whole(folder.path() / "preview.png", png_bytes(preview_picture(job))); },
+      [&] { write_file_whole(folder.path() / "preview.glb", preview_glb(job)); },
+      [&] { write_file_whole(folder.path() / "assembly.glb", assembly_glb(job)); },
+      [&] { write_file_whole(folder.path() / "profile.toml", profile_toml(job.profile)); },
+      [&] { write_file_whole(folder.path() / "job.json", json_text(job_json(job))); }};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    progress.report("writing", static_cast<double>(i) / steps);
     const int number = static_cast<int>(i) + 1;
-    write_tray(all[i], number, folder.path());
-    if (trays[i].program_extension)
+    add_tray(all[i], number, folder.path(), writes);
+    if (!trays[i].program_extension) continue;
+    writes.emplace_back([&, i, number] {
       write_file_whole(folder.path() / tray_file("program", number, *trays[i].program_extension),
                        trays[i].program);
+    });
   }
-  progress.report("writing", (steps - 2) / steps);
-  write_file_whole(folder.path() / "preview.glb", preview_glb(job));
-  write_file_whole(folder.path() / "assembly.glb", assembly_glb(job));
-  progress.report("writing", (steps - 1) / steps);
-  write_file_whole(folder.path() / "preview.png", png_bytes(preview_picture(job)));
-  write_file_whole(folder.path() / "profile.toml", profile_toml(job.profile));
-  write_file_whole(folder.path() / "job.json", json_text(job_json(job)));
-  progress.report("writing", 1);
+  std::atomic<std::size_t> written = 0;
+  progress.report("writing", 0);
+  parallel_tasks(writes.size(), [&](std::size_t i) {
+    writes[i]();
+    progress.report("writing", static_cast<double>(++written) / static_cast<double>(writes.size()));
+  });
   folder.publish(out);
 }
 
