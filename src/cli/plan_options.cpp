@@ -10,6 +10,8 @@ namespace {
 
 const std::map<std::string, double> kUnits{{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
 
+constexpr int kMostCopies = 1000;
+
 // CLI11's own checks let NaN and infinity through.
 const CLI::Validator kFinite(
     [](const std::string& text) {
@@ -24,6 +26,9 @@ const CLI::Validator kFinite(
 void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
   verb.add_option("MODEL", arguments.models, "STL, OBJ, PLY, OFF or 3MF; several share the tray")
       ->required();
+  verb.add_option("--copies", arguments.copies, "of each model; they share the trays")
+      ->check(CLI::Range(1, kMostCopies))
+      ->capture_default_str();
   verb.add_option("--units", arguments.units, "what the file's numbers are, where it does not say")
       ->check(CLI::IsMember({"mm", "cm", "m", "in"}))
       ->capture_default_str();
@@ -46,7 +51,8 @@ void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
 
 PlanOptions plan_options(const PlanArguments& arguments) {
   PlanOptions options;
-  options.models.assign(arguments.models.begin(), arguments.models.end());
+  for (const std::string& model : arguments.models)
+    options.models.insert(options.models.end(), static_cast<std::size_t>(arguments.copies), model);
   options.sizing.unit_mm = kUnits.at(arguments.units);
   options.sizing.scale = arguments.scale;
   options.sizing.size_mm = arguments.size_mm;
@@ -66,10 +72,14 @@ Profile chosen_profile(const std::string& id_or_path, const PlanArguments& argum
 
 std::string sizes_of(const Job& job) {
   std::string text;
-  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
+  for (std::size_t i = 0; i < job.inputs.size();) {
+    std::size_t next = i;
+    while (next < job.inputs.size() && job.inputs[next].sha256 == job.inputs[i].sha256) ++next;
+    const std::string copies = next - i > 1 ? fmt::format(", {} copies", next - i) : "";
     const Vec3 size = bounding_box(job.models[i]).sizes();
-    text += fmt::format("{}: {:.1f} x {:.1f} x {:.1f} mm\n", job.inputs[i].file, size.x(), size.y(),
-                        size.z());
+    text += fmt::format("{}: {:.1f} x {:.1f} x {:.1f} mm{}\n", job.inputs[i].file, size.x(),
+                        size.y(), size.z(), copies);
+    i = next;
   }
   return text;
 }

@@ -15,6 +15,7 @@ namespace packmerger::cli {
 
 struct PlanArguments {
   std::vector<std::string> models;
+  int copies = 1;
   std::string units = "mm";
   double scale = 1;
   std::optional<double> size_mm;
@@ -33,7 +34,7 @@ PlanOptions plan_options(const PlanArguments& arguments);
 // Reads the profile and applies --set.
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments);
 
-// A line for each model with its size, so that a wrong unit is seen.
+// A line for each model with its size, so that a wrong unit is seen; copies share one.
 std::string sizes_of(const Job& job);
 
 // The machine as the head of a table: "Objet30 (objet30)".

@@ -76,9 +76,10 @@ PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function
   std::map<std::vector<double>, int> known;
   for (std::size_t i = 0; i < problem.items.size(); ++i) {
     Shape shape{to_soup(problem.items[i].surface), 0};
-    std::vector<double> look;
+    const Vec3& centre = centres_[static_cast<std::size_t>(problem.items[i].model)];
+    std::vector<double> look{centre.x(), centre.y(), centre.z()};
     for (Vec3& point : shape.surface.points) {
-      point -= centres_[static_cast<std::size_t>(problem.items[i].model)];
+      point -= centre;
       look.insert(look.end(), {point.x(), point.y(), point.z()});
     }
     for (const auto& [a, b, c] : shape.surface.triangles)
@@ -132,10 +133,24 @@ const Part* PartMaker::make(const ItemSet& items) {
   part->model = problem_.items[static_cast<std::size_t>(items.front())].model;
   for (const int item : items)
     part->volume_mm3 += problem_.items[static_cast<std::size_t>(item)].volume_mm3;
-  part->ways = ways_of(*part);
+  const ItemSet key = twins(items);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = ways_.find(key);
+    if (found != ways_.end()) part->ways = found->second;
+  }
+  if (part->ways.empty()) part->ways = ways_of(*part);
   const std::lock_guard lock(mutex_);
+  ways_.emplace(key, part->ways);
   const Part* made = parts_.emplace(items, std::move(part)).first->second.get();
   return made->ways.empty() ? nullptr : made;
+}
+
+ItemSet PartMaker::twins(const ItemSet& items) const {
+  ItemSet twins;
+  for (const int item : items) twins.push_back(shapes_[static_cast<std::size_t>(item)].twin);
+  std::sort(twins.begin(), twins.end());
+  return twins;
 }
 
 std::vector<WayUp> PartMaker::ways_of(const Part& part) {
@@ -236,7 +251,7 @@ const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& rotation,
 const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& base, int quarters,
                                       double inside_support_mm3) {
   const Mat3 rotation = turn_about_z(quarters * kQuarter) * base;
-  const std::pair key(part.items, key_of(rotation));
+  const std::pair key(twins(part.items), key_of(rotation));
   const auto usable = [](const std::unique_ptr<RotatedPart>& made) {
     return made->top.empty() ? nullptr : made.get();
   };

@@ -51,7 +51,7 @@ class PartMaker {
  private:
   struct Shape {  // of an item, about its model's centre
     TriangleSoup surface;
-    int twin = 0;  // the first item with the same shape
+    int twin = 0;  // the first item with the same shape about the same centre
   };
 
   const RotatedPart* rotated(const Part& part, const Mat3& base, int quarters,
@@ -60,6 +60,8 @@ class PartMaker {
   // Kept while samples are searched: merged parts ask for their members' again. Bounds are drawn
   // for one layout, and fine ones are large.
   std::shared_ptr<const DepthMaps> maps(int twin, const Mat3& rotation);
+  // Copies are told apart by their twins only: what was found for one serves all.
+  ItemSet twins(const ItemSet& items) const;
   std::vector<WayUp> ways_of(const Part& part);
   void add_own_ways(const Part& part, const std::vector<WayUp>& ways,
                     const std::function<double(const Mat3&)>& add);
@@ -76,7 +78,8 @@ class PartMaker {
   std::mutex mutex_;           // guards the caches
   std::map<std::pair<int, RotationKey>, std::shared_ptr<const DepthMaps>> maps_;
   std::map<ItemSet, std::unique_ptr<Part>> parts_;
-  std::map<std::pair<ItemSet, RotationKey>, std::unique_ptr<RotatedPart>> rotated_;
+  std::map<ItemSet, std::vector<WayUp>> ways_;                                       // by twins
+  std::map<std::pair<ItemSet, RotationKey>, std::unique_ptr<RotatedPart>> rotated_;  // by twins
 };
 
 }  // namespace packmerger

@@ -18,6 +18,7 @@ void add_pack(CLI::App& program);
 void add_figures(CLI::App& program);
 
 // Mixed small parts on a square base at the least height, against the paper's packer.
+void add_many(CLI::App& program);
 void add_mixed(CLI::App& program);
 void add_nested(CLI::App& program);
 

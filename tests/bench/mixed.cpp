@@ -2,15 +2,13 @@
 #include <limits>
 #include <memory>
 
-#include "base/random.h"
 #include "bench/bench.h"
+#include "bench/mixed_parts.h"
 #include "bench/reference_problem.h"
 #include "bench/reference_search.h"
 #include "bench/stopwatch.h"
 #include "bench/told.h"
-#include "fixtures/models.h"
 #include "pack/pack.h"
-#include "unit/pack/shapes.h"
 
 namespace packmerger::bench {
 namespace {
@@ -21,66 +19,9 @@ struct Arguments {
   bool json = false;
 };
 
-// A U of two legs on a base, all `thick` mm thick.
-Mesh u_shape(double width, double leg, double thick, double depth) {
-  return shapes::extruded({{0, 0},
-                           {thick, 0},
-                           {width - thick, 0},
-                           {width, 0},
-                           {width, leg},
-                           {width - thick, leg},
-                           {width - thick, thick},
-                           {thick, thick},
-                           {thick, leg},
-                           {0, leg}},
-                          {{0, 1, 7, 8, 9}, {1, 2, 6, 7}, {3, 4, 5, 6, 2}}, depth);
-}
-
-// Seven kinds, four of each, every one at a scale of its own between 0.8 and 1.2: cubes of 22 mm;
-// tori of ring radius 13 and tube radius 5.5 mm; cups of radius 13, height 28 and wall 3 mm;
-// spheres of radius 13 mm; L of legs 32, thickness 12 and depth 16 mm; U of width 32, legs 28,
-// thickness 9 and depth 16 mm; corners of a cube with sides of 38 mm.
-std::vector<Mesh> mixed_parts(std::uint64_t seed) {
-  Random random(seed);
-  std::vector<Mesh> parts;
-  for (int copy = 0; copy < 4; ++copy)
-    for (int kind = 0; kind < 7; ++kind) {
-      const double s = 0.8 + 0.4 * random.unit();
-      switch (kind) {
-        case 0:
-          parts.push_back(shapes::box(Vec3::Constant(22 * s)));
-          break;
-        case 1:
-          parts.push_back(closed_mesh(fixtures::torus(13 * s, 5.5 * s, 32, 16)));
-          break;
-        case 2:
-          parts.push_back(shapes::cup(13 * s, 28 * s, 3 * s));
-          break;
-        case 3:
-          parts.push_back(shapes::sphere(13 * s, 24));
-          break;
-        case 4:
-          parts.push_back(shapes::l_shape(32 * s, 12 * s, 16 * s));
-          break;
-        case 5:
-          parts.push_back(u_shape(32 * s, 28 * s, 9 * s, 16 * s));
-          break;
-        default:
-          parts.push_back(shapes::tetrahedron(38 * s));
-      }
-    }
-  return parts;
-}
-
 PackProblem mixed_problem(std::uint64_t seed) {
   PackProblem problem;
-  for (Mesh& mesh : mixed_parts(seed)) {
-    PackItem item;
-    item.volume_mm3 = volume_mm3(mesh);
-    item.model = static_cast<int>(problem.items.size());
-    item.surface = std::move(mesh);
-    problem.items.push_back(std::move(item));
-  }
+  problem.items = mixed_items(28, seed);
   problem.build_mm = Vec3(100, 100, 150);
   problem.gap_mm = 0;
   problem.anywhere = true;
