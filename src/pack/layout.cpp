@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace packmerger {
 
@@ -9,6 +10,10 @@ int Layout::parts() const {
   return std::accumulate(trays.begin(), trays.end(), 0, [](int sum, const auto& tray) {
     return sum + static_cast<int>(tray->placed.size());
   });
+}
+
+bool is_better(const Layout& a, const Layout& b) {
+  return std::pair(a.trays.size(), a.cost) < std::pair(b.trays.size(), b.cost);
 }
 
 std::vector<Task> kept(const FilledTray& tray) {

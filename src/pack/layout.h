@@ -37,6 +37,9 @@ struct Layout {
   int parts() const;
 };
 
+// Fewer trays come first, whatever they cost: each is a bed to be cleared.
+bool is_better(const Layout& a, const Layout& b);
+
 // A part to be put on a tray: in a given rotation at the cheapest place of a window, or freely, in
 // several rotations on the first tray that has a place. What finds no place in its window is put
 // freely; what stays near looks in ever wider windows first.

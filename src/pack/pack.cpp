@@ -27,6 +27,7 @@ constexpr double kFinestShare = 0.25;       // of grid_mm: the grid of the last 
 constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
+constexpr double kCellsOfItem = 10;     // along an item on average, at least
 constexpr double kDroppingShare = 0.6;  // of the budget: for layouts of dropped parts
 constexpr double kInTime = 0.97;        // of the budget: room for the last measurement
 constexpr double kAboutEqual = 1.005;   // costs: the layout of fewest parts is taken
@@ -88,8 +89,15 @@ Grid grid_of(const PackProblem& problem, double cell_mm, bool bounds, double mar
   return {cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm + margin_mm, bounds};
 }
 
+// Cells as coarse as the parts allow: on few cells of a small part a layout tells little of what a
+// finer grid makes of it.
 Grid search_grid(const PackProblem& problem) {
-  return grid_of(problem, std::max(problem.search_grid_mm, problem.grid_mm), false);
+  double longest_mm = 0;
+  for (const PackItem& item : problem.items)
+    longest_mm += bounding_box(item.surface).sizes().maxCoeff();
+  const double cell_mm = longest_mm / static_cast<double>(problem.items.size()) / kCellsOfItem;
+  return grid_of(problem, std::max(problem.grid_mm, std::min(cell_mm, problem.search_grid_mm)),
+                 false);
 }
 
 // A maker and the trays of one grid.
@@ -104,16 +112,6 @@ struct Workshop {
   Layouter layouter;
 };
 
-// Each part alone on the plate, the best way up, side by side.
-Layout side_by_side(const PackProblem& problem, Workshop& workshop) {
-  Random unused(0);
-  Moves moves(problem, workshop.maker);
-  const RotationChoice best_alone = [&moves](const Part& part) {
-    return moves.good_rotations(part, 1);
-  };
-  return *workshop.layouter.carried_out(moves.start(true, unused), best_alone, kInfinity, true);
-}
-
 // Takes what the search found on its grid over to the answer's grid and to the finest. Layouts that
 // are finished one after the other share what was drawn for them.
 class Finisher {
@@ -125,21 +123,39 @@ class Finisher {
         placing_(problem, grid_of(problem, problem.grid_mm, true, margin_mm), pace),
         finest_(problem, grid_of(problem, finest_cell_mm(problem), true, margin_mm), pace) {}
 
+  // With exact gaps parts need more room than the search gave them, which adds up over a row: where
+  // a short reach piles them up, they are all placed anew.
   Packing finished(const Layout& found) {
+    const double cell_mm = found_on_.cell_mm;
+    return on_finest(refined(found, found_on_, placing_.layouter, placing_.maker,
+                             {0, cell_mm, 4 * cell_mm, kInfinity}, false));
+  }
+
+  // Each part alone on the plate, the best way up.
+  Packing side_by_side() {
+    Random unused(0);
+    Moves moves(problem_, placing_.maker);
+    const RotationChoice best_alone = [&moves](const Part& part) {
+      return moves.good_rotations(part, 1);
+    };
+    return on_finest(
+        *placing_.layouter.carried_out(moves.start(true, unused), best_alone, kInfinity, true));
+  }
+
+ private:
+  Packing on_finest(const Layout& placed) {
+    const double reach_mm = problem_.grid_mm;
     Layout layout =
-        refined(found, found_on_, placing_.layouter, placing_.maker, found_on_.cell_mm, false);
-    layout = refined(layout, placing_.spec.grid, finest_.layouter, finest_.maker, problem_.grid_mm,
-                     true);
+        refined(placed, placing_.spec.grid, finest_.layouter, finest_.maker, {0, reach_mm}, true);
     for (int pass = 1; pass < kFinestPasses; ++pass) {
       Layout again = refined(layout, finest_.spec.grid, finest_.layouter, finest_.maker,
-                             problem_.grid_mm / 2, true);
-      if (again.cost >= layout.cost) break;
+                             {0, reach_mm / 2}, true);
+      if (!is_better(again, layout)) break;
       layout = std::move(again);
     }
     return packing_of(layout, finest_.maker, problem_);
   }
 
- private:
   const PackProblem& problem_;
   const Grid& found_on_;
   Workshop placing_;
@@ -156,15 +172,16 @@ Packing closer(const PackProblem& problem, Packing packing, Pace& pace) {
 // The answer, its gaps checked on the meshes. The maps bound those, so there is nothing to repair
 // but where rounding lost more than was allowed for; then the layout is finished again with that
 // much more room.
-Packing with_gaps_kept(const Layout& layout, const Grid& grid, Packing packing,
-                       const PackProblem& problem, Pace& pace) {
+Packing with_gaps_kept(const std::function<Packing(Finisher&)>& finish, const Grid& grid,
+                       Packing packing, const PackProblem& problem, Pace& pace) {
   double margin = 0;
   for (int repair = 0; repair < kRepairs; ++repair) {
     Packing close = closer(problem, packing, pace);
     const double missing = problem.gap_mm - least_gap_mm(close, problem);
     if (missing <= kGapTolerance_mm) return close;
     margin += 1.5 * missing + 0.01;
-    packing = Finisher(problem, grid, margin, pace).finished(layout);
+    Finisher roomier(problem, grid, margin, pace);
+    packing = finish(roomier);
   }
   throw Error(Fault::kInternal,
               fmt::format("The parts could not be kept {} mm apart", problem.gap_mm),
@@ -200,6 +217,26 @@ void make_items(const PackProblem& problem, PartMaker& maker) {
   });
 }
 
+// On the fewest trays the cheapest; of about equal ones that of the fewest parts, if it is no
+// dearer than the last, which is every part alone.
+std::size_t best_of(const std::vector<Packing>& packings) {
+  const auto rank = [&](std::size_t i) {
+    return std::pair(packings[i].trays.size(), packings[i].cost);
+  };
+  std::size_t cheapest = 0;
+  for (std::size_t i = 1; i < packings.size(); ++i)
+    if (rank(i) < rank(cheapest)) cheapest = i;
+  double limit = kAboutEqual * packings[cheapest].cost;
+  if (packings.back().trays.size() == packings[cheapest].trays.size())
+    limit = std::min(limit, packings.back().cost);
+  std::size_t best = cheapest;
+  for (std::size_t i = 0; i < packings.size(); ++i)
+    if (packings[i].trays.size() == packings[cheapest].trays.size() && packings[i].cost <= limit &&
+        packings[i].parts.size() < packings[best].parts.size())
+      best = i;
+  return best;
+}
+
 }  // namespace
 
 double trial_cost(const PackProblem& problem, const Progress& progress) {
@@ -221,27 +258,23 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   Workshop searching(problem, search_grid(problem), pace);
   make_items(problem, searching.maker);
   pace.set_share(problem.anywhere ? kDroppingShare : 1);
-  std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
+  const std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
   pace.set_share(kInTime);
-  layouts.push_back(side_by_side(problem, searching));
 
+  std::vector<std::function<Packing(Finisher&)>> ways;
+  for (const Layout& layout : layouts)
+    ways.emplace_back([&layout](Finisher& finisher) { return finisher.finished(layout); });
+  ways.emplace_back([](Finisher& finisher) { return finisher.side_by_side(); });
   Finisher finisher(problem, searching.spec.grid, 0, pace);
-  std::vector<Packing> packings(layouts.size());
+  std::vector<Packing> packings(ways.size());
   std::atomic<std::size_t> ready = 0;
-  parallel_tasks(layouts.size(), [&](std::size_t i) {
-    packings[i] = finisher.finished(layouts[i]);
-    pace.reached(0.8 + 0.15 * static_cast<double>(++ready) / static_cast<double>(layouts.size()));
+  parallel_tasks(ways.size(), [&](std::size_t i) {
+    packings[i] = ways[i](finisher);
+    pace.reached(0.8 + 0.15 * static_cast<double>(++ready) / static_cast<double>(ways.size()));
   });
-  const auto cheapest =
-      std::min_element(packings.begin(), packings.end(),
-                       [](const Packing& a, const Packing& b) { return a.cost < b.cost; });
-  std::size_t chosen = static_cast<std::size_t>(cheapest - packings.begin());
-  const double limit = std::min(kAboutEqual * cheapest->cost, packings.back().cost);
-  for (std::size_t i = 0; i < packings.size(); ++i)
-    if (packings[i].cost <= limit && packings[i].parts.size() < packings[chosen].parts.size())
-      chosen = i;
-  Packing best = with_gaps_kept(layouts[chosen], searching.spec.grid, std::move(packings[chosen]),
-                                problem, pace);
+  const std::size_t chosen = best_of(packings);
+  Packing best =
+      with_gaps_kept(ways[chosen], searching.spec.grid, std::move(packings[chosen]), problem, pace);
   if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;

@@ -1,6 +1,6 @@
 #include "pack/refine.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,6 +16,7 @@ Range window(int cell, double shift_from_mm, double shift_to_mm, double from_cel
   // Both shifts place the same rotated model: the same place has equal cell · cell_mm + shift.
   const double at = (cell * from_cell_mm + shift_from_mm - shift_to_mm) / to_cell_mm;
   const double reach = reach_mm / to_cell_mm;
+  if (std::isinf(reach)) return kAllCells;
   return {static_cast<int>(std::lround(at - reach)), static_cast<int>(std::lround(at + reach))};
 }
 
@@ -47,7 +48,7 @@ Draft drafted(const Layout& layout, const Grid& from, const Grid& to, const Rota
 }  // namespace
 
 Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartMaker& maker,
-               double reach_mm, bool stays_near) {
+               const std::vector<double>& reaches_mm, bool stays_near) {
   Rotations rotations;  // nullptr where the part stands off the grid, or no longer fits
   for (const auto& tray : layout.trays)
     for (const Placed& placed : tray->placed)
@@ -59,14 +60,13 @@ Layout refined(const Layout& layout, const Grid& from, const Layouter& to, PartM
     const RotatedPart* rotated = rotations.at(&part);
     return rotated ? std::vector{rotated} : std::vector<const RotatedPart*>{};
   };
-  const std::array<double, 2> reaches{0, reach_mm};
-  std::array<Layout, 2> layouts;
-  parallel_tasks(reaches.size(), [&](std::size_t i) {
+  std::vector<Layout> layouts(reaches_mm.size());
+  parallel_tasks(layouts.size(), [&](std::size_t i) {
     layouts[i] =
-        *to.carried_out(drafted(layout, from, to.spec().grid, rotations, reaches[i], stays_near),
+        *to.carried_out(drafted(layout, from, to.spec().grid, rotations, reaches_mm[i], stays_near),
                         the_same, std::numeric_limits<double>::infinity());
   });
-  return layouts[1].cost < layouts[0].cost ? layouts[1] : layouts[0];
+  return *std::min_element(layouts.begin(), layouts.end(), is_better);
 }
 
 }  // namespace packmerger

@@ -78,7 +78,9 @@ class TabuSearch {
     parallel_tasks(drafts.size(), [&](std::size_t i) {
       layouts[i] = *layouter_.carried_out(drafts[i], good, kInfinity);
     });
-    return layouts[layouts[1].cost < layouts[0].cost ? 1 : 0];
+    Layout& first = layouts[is_better(layouts[1], layouts[0]) ? 1 : 0];
+    most_trays_ = first.trays.size();
+    return std::move(first);
   }
 
   // Tabu search from a layout until nothing better was found for a while.
@@ -136,6 +138,7 @@ class TabuSearch {
         return moves_.some_rotations(part, random);
       };
       layouts[i] = layouter_.carried_out(moves[i].draft, some, least.load());
+      if (layouts[i] && layouts[i]->trays.size() > most_trays_) layouts[i].reset();
       if (layouts[i]) lower(least, layouts[i]->cost);
     });
     return layouts;
@@ -165,6 +168,7 @@ class TabuSearch {
 
   void improve(const Layout& layout) {
     best_ = layout;
+    most_trays_ = best_.trays.size();
     if (on_better_) on_better_(layout.cost);
   }
 
@@ -190,6 +194,7 @@ class TabuSearch {
   const OnBetter& on_better_;
   Random random_;
   Layout best_;
+  std::size_t most_trays_ = std::numeric_limits<std::size_t>::max();
   std::map<int, Layout> cheapest_;  // by number of parts
 };
 
