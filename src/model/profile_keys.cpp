@@ -134,7 +134,7 @@ void add_pack(PackSettings& s, std::vector<Key>& keys) {
        {"tabu_samples", IntegerKey{&s.tabu_samples, from_to(1, 100000)}, "moves",
         "Moves tried in one round."},
        {"search_grid_mm", NumberKey{&s.search_grid_mm, from_to(0.1, 50)}, "mm",
-        "The cell of the height field while layouts are searched."}});
+        "The cell of the height field while layouts are searched; small parts get smaller ones."}});
 }
 
 void add_polyjet(PolyjetSettings& s, std::vector<Key>& keys) {

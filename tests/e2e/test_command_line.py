@@ -116,6 +116,20 @@ class Jobs(CommandLine):
         told = json.loads((self.folder / "job" / "job.json").read_text())
         self.assertEqual(len(told["parts"]), 2)
 
+    def test_copies_with_and_without_splitting(self):
+        for name, split in (("whole", ["--no-split"]), ("divided", [])):
+            with self.subTest(name):
+                job = self.folder / name
+                result = program.run("prepare", self.torus, self.sphere, "--copies", "2", *split, "--profile", "objet30",
+                                     "--size", "30", *FAST, "--out", job)
+                self.assertEqual(result.code, 0, str(result))
+                self.assertIn("2 copies", result.out)
+                self.assertEqual(check(job, [self.torus, self.sphere]).failures(), [])
+                told = json.loads((job / "job.json").read_text())
+                self.assertEqual([entry["file"] for entry in told["inputs"]],
+                                 ["torus.stl", "torus.stl", "sphere.stl", "sphere.stl"])
+                self.assertEqual({part["model"] for part in told["parts"]}, {0, 1, 2, 3})
+
     def test_more_than_a_tray_holds(self):
         result = self.prepare(*[self.torus] * 5, "--no-split", "--profile", "objet30", "--set", "build_mm=60,50,25",
                               *FAST)

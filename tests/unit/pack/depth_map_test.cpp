@@ -244,6 +244,19 @@ RC_GTEST_PROP(DepthMaps, WhatHangsIsTheSupportOfTheColumns, (std::uint64_t seed)
   RC_ASSERT(std::abs(support - expected) <= 1e-5 * expected + 1e-4);
 }
 
+RC_GTEST_PROP(DepthMaps, CentresAreTheSameAlone, (std::uint64_t seed)) {
+  Random random(seed);
+  const double grid = 0.5 + random.unit();
+  const TriangleSoup surface =
+      to_soup(shapes::turned(any_shape(random), shapes::any_rotation(random)));
+  const DepthMaps whole = draw_depth_maps(surface, grid, 0.5);
+  const DepthMaps alone = draw_centre_maps(surface, grid, 0.5);
+  RC_ASSERT(alone.x0 == whole.x0 && alone.y0 == whole.y0);
+  RC_ASSERT(alone.bottom == whole.bottom);
+  RC_ASSERT(alone.roof == whole.roof);
+  RC_ASSERT(alone.hangs == whole.hangs);
+}
+
 // OSMesa's heights at one ray and at its eight neighbours: what its sampling, which is exact to a
 // fraction of a step sideways, leaves open.
 struct Neighbourhood {

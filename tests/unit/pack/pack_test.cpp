@@ -162,6 +162,31 @@ TEST(Pack, MorePartsThanFitGoToFurtherTrays) {
   EXPECT_EQ(packing.trays.size(), 2U);
 }
 
+TEST(Pack, FewTraysComeBeforeLittleCost) {
+  // On two trays they need no support at all; five of them fit one, in two layers.
+  PackProblem problem =
+      problem_of(std::vector<Mesh>(5, shapes::box(Vec3(30, 30, 30))), Vec3(62, 62, 64));
+  problem.cost = shapes::paper_cost(0);
+  const Packing packing = pack(problem, {});
+  check::expect_valid(problem, packing, 0.5);
+  EXPECT_EQ(packing.trays.size(), 1U);
+}
+
+TEST(Pack, NestedShellsComeAsCloseAsTheirShapesAllow) {
+  std::vector<Mesh> patches;
+  for (int face = 0; face < 3; ++face) patches.push_back(shapes::sphere_patch(50, 3, face, 12));
+  PackProblem problem = problem_of(std::move(patches), Vec3(72, 72, 200));
+  problem.gap_mm = 0;
+  problem.cost.evaluate = [](const TrayMeasure& m) { return m.size_mm.z(); };
+  problem.cost.lower_bound = problem.cost.evaluate;
+  const Packing packing = pack(problem, {});
+  check::expect_valid(problem, packing, 0.5);
+  // Spheres of 50 and 47 mm meet at a patch's corners, 47 / √3 along the axis.
+  const double corner = 47 / std::sqrt(3.0);
+  const double spacing = std::sqrt(corner * corner + 50 * 50 - 47 * 47) - corner;
+  EXPECT_LT(packing.cost, 1.01 * (50 - corner + 2 * spacing));
+}
+
 TEST(Pack, ManyPartsOfFewShapesFillSeveralTrays) {
   std::vector<Mesh> meshes;
   for (int i = 0; i < 60; ++i)

@@ -99,6 +99,20 @@ TEST(Different, SomeRotationsHaveNoTwins) {
   }
 }
 
+TEST(PartMaker, CopiesShareWhatIsDrawn) {
+  // The third looks the same but stands elsewhere in its model's frame.
+  const PackProblem problem = shapes::problem_of(
+      {shapes::l_shape(20, 4, 10), shapes::l_shape(20, 4, 10),
+       transformed(shapes::l_shape(20, 4, 10), Pose(Eigen::Translation3d(5, 0, 0)))},
+      Vec3(60, 60, 60));
+  PartMaker maker(problem, {1, 1.0 / 64, 1, true}, [] {});
+  const auto first_rotation = [&maker](int item) {
+    return maker.rotated(*maker.make({item}), 0, 0);
+  };
+  EXPECT_EQ(first_rotation(0), first_rotation(1));
+  EXPECT_NE(first_rotation(0), first_rotation(2));
+}
+
 TEST(Search, TellsTheCostOfEachBetterLayout) {
   PackProblem problem = shapes::problem_of(
       {shapes::cup(9, 12, 2), shapes::l_shape(18, 4, 10), shapes::bowl(10, 2),
