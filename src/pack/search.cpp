@@ -54,8 +54,14 @@ class TabuSearch {
       const double before = best_.cost;
       descend(current);
       kicks = best_.cost < before ? 0 : kicks + 1;
-      if (kicks > problem_.tabu_restarts || over()) break;
-      current = kicked(best_);
+      if (over()) break;
+      if (kicks <= problem_.tabu_restarts) {
+        current = kicked(best_);
+      } else {
+        if (!pace_.has_budget() || best_.parts() == 1) break;
+        current = fresh_layout();
+        kicks = 0;
+      }
       progress_of(kicks);
     }
     merge_on();
@@ -83,6 +89,14 @@ class TabuSearch {
     return std::move(first);
   }
 
+  // Of another order than any before.
+  Layout fresh_layout() {
+    const RotationChoice some = [this](const Part& part) {
+      return moves_.some_rotations(part, random_);
+    };
+    return *layouter_.carried_out(moves_.start(false, random_), some, kInfinity);
+  }
+
   // Tabu search from a layout until nothing better was found for a while.
   void descend(Layout& current) {
     std::deque<std::vector<const Part*>> forbidden;
@@ -102,7 +116,7 @@ class TabuSearch {
         reached = current.cost;
         rounds_without_better = 0;
       }
-      if (current.cost < best_.cost) improve(current);
+      if (is_better(current, best_)) improve(current);
     }
   }
 

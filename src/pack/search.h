@@ -25,6 +25,7 @@ class Pace {
   void reached(double fraction);
   // To be called often: reports from time to time, and throws when cancellation was asked for.
   void tick();
+  bool has_budget() const { return budget_s_ > 0; }
   // How much of the budget has passed, 0 without one; 1: time is up.
   double passed() const;
   // From now on, passed() is counted in this share of the budget: a stage's own. Not while other
@@ -50,8 +51,8 @@ using OnBetter = std::function<void(double cost)>;
 // per cent dearer than the first. Each round draws problem.tabu_samples moves that touch no part
 // moved in the last problem.tabu_memory rounds, carries all of them out, in parallel, and goes on
 // from the cheapest, better or not. After problem.tabu_patience rounds without a better layout the
-// search is kicked away from the best one; it ends after some kicks without a better one, or with
-// the budget. Without a budget the same seed gives the same answer on any number of threads.
+// search is kicked away from the best one; after some kicks without a better one it ends or, with a
+// budget, begins afresh until that has passed. Without a budget the same seed gives the same answer on any number of threads.
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
                            Pace& pace, const OnBetter& on_better = {});
 
