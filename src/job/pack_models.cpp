@@ -124,6 +124,15 @@ double shortfall(const Arrangement& arrangement, const Profile& profile) {
   return worst;
 }
 
+// As many as the profile asks for of each model that is divided for the printer; the paper's
+// clusters merge as it pays.
+int most_parts(const Models& models, const Profile& profile) {
+  if (profile.shape.segmentation == Segmentation::kPaper) return 0;
+  int most = 0;
+  for (const auto& model : models) most += model->tets.count() > 0 ? profile.shape.parts : 1;
+  return most;
+}
+
 }  // namespace
 
 PackProblem packing_problem(const Models& models, const Profile& profile, std::uint64_t seed,
@@ -156,6 +165,7 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
   problem.tabu_memory = profile.pack.tabu_memory;
   problem.tabu_patience = profile.pack.tabu_patience;
   problem.tabu_samples = profile.pack.tabu_samples;
+  problem.most_parts = most_parts(models, profile);
   problem.budget_s = budget_s;
   problem.seed = seed;
   return problem;

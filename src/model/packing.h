@@ -53,6 +53,7 @@ struct PackProblem {
   // After the search, parts are taken out and put back wherever they fit, in cavities and under
   // overhangs too, with a proven way out. Takes long where parts are large.
   bool anywhere = false;
+  int most_parts = 0;   // merging goes on until there are no more, if it can; 0: as it pays
   double budget_s = 0;  // 0: until the search ends by itself
   std::uint64_t seed = 1;
 };

@@ -108,7 +108,8 @@ void add_shape(ShapeSettings& s, std::vector<Key>& keys) {
         "plane "
         "cuts."},
        {"parts", IntegerKey{&s.parts, from_to(2, 100)}, "",
-        "Most parts aimed at where planes divide the shell (segmentation = \"printer\")."}});
+        "Most parts of a model aimed at (segmentation = \"printer\"): planes make no more, and "
+        "parts are merged until there are no more, if they can."}});
 }
 
 void add_pack(PackSettings& s, std::vector<Key>& keys) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -217,11 +218,13 @@ void make_items(const PackProblem& problem, PartMaker& maker) {
   });
 }
 
-// On the fewest trays the cheapest; of about equal ones that of the fewest parts, if it is no
-// dearer than the last, which is every part alone.
-std::size_t best_of(const std::vector<Packing>& packings) {
+// On the fewest trays, with no more parts than asked for, the cheapest; of about equal ones that of
+// the fewest parts, if it is no dearer than the last, which is every part alone.
+std::size_t best_of(const std::vector<Packing>& packings, std::size_t most_parts) {
   const auto rank = [&](std::size_t i) {
-    return std::pair(packings[i].trays.size(), packings[i].cost);
+    const std::size_t parts = packings[i].parts.size();
+    const std::size_t too_many = parts > most_parts ? parts - most_parts : 0;
+    return std::tuple(packings[i].trays.size(), too_many, packings[i].cost);
   };
   std::size_t cheapest = 0;
   for (std::size_t i = 1; i < packings.size(); ++i)
@@ -272,7 +275,9 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
     packings[i] = ways[i](finisher);
     pace.reached(0.8 + 0.15 * static_cast<double>(++ready) / static_cast<double>(ways.size()));
   });
-  const std::size_t chosen = best_of(packings);
+  const std::size_t chosen =
+      best_of(packings, problem.most_parts > 0 ? static_cast<std::size_t>(problem.most_parts)
+                                               : problem.items.size());
   Packing best =
       with_gaps_kept(ways[chosen], searching.spec.grid, std::move(packings[chosen]), problem, pace);
   if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <map>
@@ -167,13 +168,14 @@ class TabuSearch {
   }
 
   // Additional merging (paper, section 6.3): from the best layout on, the merge that costs least,
-  // as long as the result is worth keeping.
+  // as long as there are too many parts or the result is worth keeping.
   void merge_on() {
     Layout layout = best_;
     while (true) {
       std::vector<std::optional<Layout>> merged = carried_out(moves_.merges(layout, random_));
       const std::optional<std::size_t> chosen = cheapest(merged);
-      if (!chosen || merged[*chosen]->cost > kWorthKeeping * best_.cost) break;
+      if (!chosen) break;
+      if (!has_too_many(layout) && merged[*chosen]->cost > kWorthKeeping * best_.cost) break;
       layout = std::move(*merged[*chosen]);
       keep(layout);
       if (layout.cost < best_.cost) improve(layout);
@@ -191,10 +193,19 @@ class TabuSearch {
     if (!is_new && layout.cost < known->second.cost) known->second = layout;
   }
 
+  bool has_too_many(const Layout& layout) const {
+    return problem_.most_parts > 0 && layout.parts() > problem_.most_parts;
+  }
+
+  // Where merging did not lead to few enough parts, the fewest will do.
   std::vector<Layout> worth_keeping() const {
+    double least = kInfinity;
+    for (const auto& [parts, layout] : cheapest_)
+      if (!has_too_many(layout)) least = std::min(least, layout.cost);
+    if (std::isinf(least)) return {cheapest_.begin()->second};
     std::vector<Layout> layouts;
     for (const auto& [parts, layout] : cheapest_)
-      if (layout.cost <= kWorthKeeping * best_.cost) layouts.push_back(layout);
+      if (!has_too_many(layout) && layout.cost <= kWorthKeeping * least) layouts.push_back(layout);
     std::stable_sort(layouts.begin(), layouts.end(),
                      [](const Layout& a, const Layout& b) { return a.cost < b.cost; });
     if (layouts.size() > kMostKept) layouts.resize(kMostKept);
