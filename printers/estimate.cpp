@@ -37,21 +37,19 @@ Estimate estimate(const Profile& profile, const std::vector<Tray>& trays, const 
 }
 
 double price_of(const CostSettings& rates, double model_g, double support_g, double time_s,
-                double labour_min) {
+                const Assembly& assembly, int trays) {
+  const double labour_min =
+      rates.glue_min_per_joint * assembly.joints + rates.clean_min_per_tray * trays;
   return model_g * rates.model_price_per_g + support_g * rates.support_price_per_g +
          time_s / 3600 * rates.machine_price_per_h + labour_min / 60 * rates.labour_price_per_h;
-}
-
-double labour_min(const CostSettings& rates, const Assembly& assembly, int trays) {
-  return rates.glue_min_per_joint * assembly.joints + rates.clean_min_per_tray * trays;
 }
 
 void price(Estimate& estimate, const Profile& profile, const Assembly& assembly) {
   const CostSettings& rates = profile.cost;
   estimate.parts = assembly.parts;
   estimate.assembly_min = rates.glue_min_per_joint * assembly.joints;
-  estimate.cost = price_of(rates, estimate.model_g, estimate.support_g, estimate.time_s,
-                           labour_min(rates, assembly, estimate.trays));
+  estimate.cost = price_of(rates, estimate.model_g, estimate.support_g, estimate.time_s, assembly,
+                           estimate.trays);
   estimate.currency = rates.currency;
 }
 

@@ -18,12 +18,9 @@ namespace packmerger {
 Estimate estimate(const Profile& profile, const std::vector<Tray>& trays, const Assembly& assembly,
                   const Progress& progress);
 
-// Money for material, machine hours and labour.
+// Money for material, machine hours and labour: gluing the joints and clearing the trays.
 double price_of(const CostSettings& rates, double model_g, double support_g, double time_s,
-                double labour_min);
-
-// Minutes of labour: gluing the joints and clearing the trays.
-double labour_min(const CostSettings& rates, const Assembly& assembly, int trays);
+                const Assembly& assembly, int trays);
 
 // Fills parts, assembly_min, cost and currency from the time, material and trays that stand in the
 // estimate. cost = material + machine hours + labour; labour = gluing (assembly_min) + clearing

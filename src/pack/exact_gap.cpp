@@ -6,11 +6,11 @@
 #include <numbers>
 #include <optional>
 
-#include "base/parallel.h"
-
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/distance.h>
+
+#include "base/parallel.h"
 
 namespace packmerger {
 namespace {

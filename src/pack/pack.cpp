@@ -113,8 +113,8 @@ struct Workshop {
   Layouter layouter;
 };
 
-// Takes what the search found on its grid over to the answer's grid and to the finest. Layouts that
-// are finished one after the other share what was drawn for them.
+// Takes what the search found on its grid over to the answer's grid and to the finest. Layouts
+// share what was drawn for them. Thread-safe.
 class Finisher {
  public:
   // margin_mm is added to the gap. All must outlive it.

@@ -58,6 +58,11 @@ TriangleSoup turned(TriangleSoup surface, const Mat3& rotation) {
   return surface;
 }
 
+std::vector<TriangleSoup> turned(std::vector<TriangleSoup> surfaces, const Mat3& rotation) {
+  for (TriangleSoup& surface : surfaces) surface = turned(std::move(surface), rotation);
+  return surfaces;
+}
+
 }  // namespace
 
 PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function<void()> tick)
@@ -158,8 +163,7 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
   std::vector<WayUp> ways;
   const auto add = [&](const Mat3& base) {
     tick_();
-    std::vector<TriangleSoup> standing;
-    for (const TriangleSoup& shape : shapes) standing.push_back(turned(shape, base));
+    const std::vector<TriangleSoup> standing = turned(shapes, base);
     const auto turn = best_turn(standing, rotation_set_.turns, problem_);
     if (turn) ways.push_back(measured(part, standing, base, *turn));
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
@@ -167,11 +171,9 @@ std::vector<WayUp> PartMaker::ways_of(const Part& part) {
   for (const Mat3& base : rotation_set_.ways_up) add(base);
   if (rotation_set_.ways_up.size() > 1) add_own_ways(part, ways, add);
   if (ways.empty()) {
-    if (const auto found = way_up_that_fits(shapes, problem_)) {
-      std::vector<TriangleSoup> standing;
-      for (const TriangleSoup& shape : shapes) standing.push_back(turned(shape, found->rotation));
-      ways.push_back(measured(part, standing, found->rotation, {0, found->size_mm}));
-    }
+    if (const auto found = way_up_that_fits(shapes, problem_))
+      ways.push_back(
+          measured(part, turned(shapes, found->rotation), found->rotation, {0, found->size_mm}));
   }
   std::stable_sort(ways.begin(), ways.end(),
                    [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });

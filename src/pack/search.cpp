@@ -85,9 +85,7 @@ class TabuSearch {
     parallel_tasks(drafts.size(), [&](std::size_t i) {
       layouts[i] = *layouter_.carried_out(drafts[i], good, kInfinity);
     });
-    Layout& first = layouts[is_better(layouts[1], layouts[0]) ? 1 : 0];
-    most_trays_ = first.trays.size();
-    return std::move(first);
+    return std::move(layouts[is_better(layouts[1], layouts[0]) ? 1 : 0]);
   }
 
   // Of another order than any before.
@@ -141,8 +139,8 @@ class TabuSearch {
     return moves;
   }
 
-  // One that exceeds another of the round may be given up, which never is the cheapest: the choice
-  // does not depend on the threads.
+  // Layouts on more trays than the best are none. One that exceeds another of the round may be
+  // given up, which never is the cheapest: the choice does not depend on the threads.
   std::vector<std::optional<Layout>> carried_out(const std::vector<Move>& moves) {
     std::vector<std::optional<Layout>> layouts(moves.size());
     std::atomic<double> least = kInfinity;
@@ -153,7 +151,7 @@ class TabuSearch {
         return moves_.some_rotations(part, random);
       };
       layouts[i] = layouter_.carried_out(moves[i].draft, some, least.load());
-      if (layouts[i] && layouts[i]->trays.size() > most_trays_) layouts[i].reset();
+      if (layouts[i] && layouts[i]->trays.size() > best_.trays.size()) layouts[i].reset();
       if (layouts[i]) lower(least, layouts[i]->cost);
     });
     return layouts;
@@ -184,7 +182,6 @@ class TabuSearch {
 
   void improve(const Layout& layout) {
     best_ = layout;
-    most_trays_ = best_.trays.size();
     if (on_better_) on_better_(layout.cost);
   }
 
@@ -219,7 +216,6 @@ class TabuSearch {
   const OnBetter& on_better_;
   Random random_;
   Layout best_;
-  std::size_t most_trays_ = std::numeric_limits<std::size_t>::max();
   std::map<int, Layout> cheapest_;  // by number of parts
 };
 

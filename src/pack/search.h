@@ -52,7 +52,8 @@ using OnBetter = std::function<void(double cost)>;
 // moved in the last problem.tabu_memory rounds, carries all of them out, in parallel, and goes on
 // from the cheapest, better or not. After problem.tabu_patience rounds without a better layout the
 // search is kicked away from the best one; after some kicks without a better one it ends or, with a
-// budget, begins afresh until that has passed. Without a budget the same seed gives the same answer on any number of threads.
+// budget, begins afresh until that has passed. Without a budget the same seed gives the same answer
+// on any number of threads.
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
                            Pace& pace, const OnBetter& on_better = {});
 
