@@ -12,19 +12,21 @@ endif()
 if(PACKMERGER_WERROR)
   target_compile_options(packmerger_compile_options INTERFACE -Werror)
 endif()
+# Seen from the build folder, where compilers run: ccache knows a file again in another checkout.
+file(RELATIVE_PATH rules_from_build ${CMAKE_BINARY_DIR} ${CMAKE_CURRENT_LIST_DIR})
 if(PACKMERGER_SANITIZE)
   target_compile_options(packmerger_compile_options INTERFACE
     -fsanitize=${PACKMERGER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     target_compile_options(packmerger_compile_options INTERFACE
-      -fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignore.txt)
+      -fsanitize-ignorelist=${rules_from_build}/sanitizer_ignore.txt)
   endif()
   target_link_options(packmerger_compile_options INTERFACE -fsanitize=${PACKMERGER_SANITIZE})
 endif()
 if(PACKMERGER_FUZZ)
   # all our code counts its branches for the fuzzers; only they have a fuzzer's main
   target_compile_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link
-    -fsanitize-coverage-ignorelist=${CMAKE_CURRENT_LIST_DIR}/coverage_ignore.txt)
+    -fsanitize-coverage-ignorelist=${rules_from_build}/coverage_ignore.txt)
   target_link_options(packmerger_compile_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 

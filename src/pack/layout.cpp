@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace packmerger {
@@ -12,8 +13,23 @@ int Layout::parts() const {
   });
 }
 
+namespace {
+
+double unrest(const FilledTray& tray, double unit_mm) {
+  double sum = 0;
+  for (const Placed& placed : tray.placed) {
+    if (placed.off_grid) continue;
+    const double top_mm = (placed.z + placed.rotated->rise) * unit_mm;
+    sum += placed.part->volume_mm3 * top_mm * top_mm;
+  }
+  return sum;
+}
+
+}  // namespace
+
 bool is_better(const Layout& a, const Layout& b) {
-  return std::pair(a.trays.size(), a.cost) < std::pair(b.trays.size(), b.cost);
+  return std::tuple(a.trays.size(), a.cost, a.unrest) <
+         std::tuple(b.trays.size(), b.cost, b.unrest);
 }
 
 std::vector<Task> kept(const FilledTray& tray) {
@@ -98,6 +114,7 @@ std::optional<Layout> Layouter::carried_out(const Draft& draft, const RotationCh
   Layout layout;
   for (const auto& tray : trays) {
     layout.cost += spec_.cost->evaluate(tray->state.measure());
+    layout.unrest += unrest(*tray, spec_.grid.unit_mm);
     layout.trays.push_back(tray);
   }
   return layout;

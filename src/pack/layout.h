@@ -33,11 +33,14 @@ struct FilledTray {
 
 struct Layout {
   std::vector<std::shared_ptr<const FilledTray>> trays;
-  double cost = 0;  // sum over the trays of Cost::evaluate
+  double cost = 0;    // sum over the trays of Cost::evaluate
+  double unrest = 0;  // mm⁵: each part's volume times its top's height squared
   int parts() const;
 };
 
-// Fewer trays come first, whatever they cost: each is a bed to be cleared.
+// Fewer trays come first, whatever they cost: each is a bed to be cleared. Of equal costs the
+// layout at less unrest is better: where only the highest part decides, it tells whether the others
+// make room below.
 bool is_better(const Layout& a, const Layout& b);
 
 // A part to be put on a tray: in a given rotation at the cheapest place of a window, or freely, in

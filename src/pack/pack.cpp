@@ -29,7 +29,7 @@ constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
 constexpr double kCellsOfItem = 10;     // along an item on average, at least
-constexpr double kDroppingShare = 0.6;  // of the budget: for layouts of dropped parts
+constexpr double kDroppingShare = 0.4;  // of the budget: for layouts of dropped parts
 constexpr double kInTime = 0.97;        // of the budget: room for the last measurement
 constexpr double kAboutEqual = 1.005;   // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -125,11 +125,16 @@ class Finisher {
         finest_(problem, grid_of(problem, finest_cell_mm(problem), true, margin_mm), pace) {}
 
   // With exact gaps parts need more room than the search gave them, which adds up over a row: where
-  // a short reach piles them up, they are all placed anew.
+  // a short reach piles them up, they are all placed anew. Where that loses a row's last place, the
+  // finest grid still has it.
   Packing finished(const Layout& found) {
     const double cell_mm = found_on_.cell_mm;
-    return on_finest(refined(found, found_on_, placing_.layouter, placing_.maker,
-                             {0, cell_mm, 4 * cell_mm, kInfinity}, false));
+    const Layout placed = refined(found, found_on_, placing_.layouter, placing_.maker,
+                                  {0, cell_mm, 4 * cell_mm, kInfinity}, false);
+    const Layout by_way = to_finest(placed);
+    const Layout direct =
+        refined(found, found_on_, finest_.layouter, finest_.maker, {0, cell_mm, 2 * cell_mm}, true);
+    return on_finest(is_better(direct, by_way) ? direct : by_way);
   }
 
   // Each part alone on the plate, the best way up.
@@ -139,15 +144,18 @@ class Finisher {
     const RotationChoice best_alone = [&moves](const Part& part) {
       return moves.good_rotations(part, 1);
     };
-    return on_finest(
-        *placing_.layouter.carried_out(moves.start(true, unused), best_alone, kInfinity, true));
+    return on_finest(to_finest(
+        *placing_.layouter.carried_out(moves.start(true, unused), best_alone, kInfinity, true)));
   }
 
  private:
-  Packing on_finest(const Layout& placed) {
+  Layout to_finest(const Layout& placed) {
+    return refined(placed, placing_.spec.grid, finest_.layouter, finest_.maker,
+                   {0, problem_.grid_mm}, true);
+  }
+
+  Packing on_finest(Layout layout) {
     const double reach_mm = problem_.grid_mm;
-    Layout layout =
-        refined(placed, placing_.spec.grid, finest_.layouter, finest_.maker, {0, reach_mm}, true);
     for (int pass = 1; pass < kFinestPasses; ++pass) {
       Layout again = refined(layout, finest_.spec.grid, finest_.layouter, finest_.maker,
                              {0, reach_mm / 2}, true);
@@ -189,15 +197,18 @@ Packing with_gaps_kept(const std::function<Packing(Finisher&)>& finish, const Gr
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
 }
 
-// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
-Packing put_under(const PackProblem& problem, Packing dropped, PartMaker& maker, Pace& pace) {
+// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes. Begins
+// with the tray before it settled: columns of bounds don't see how parts closer than that come
+// apart.
+Packing put_under(const PackProblem& problem, const Packing& dropped, Packing settled,
+                  PartMaker& maker, Pace& pace) {
   std::optional<Packing> better =
       rearranged(problem, dropped, finest_cell_mm(problem), maker, pace);
-  if (!better) return dropped;
+  if (!better) return settled;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);
   measure(problem, *better);
   const bool kept = problem.gap_mm - least_gap_mm(*better, problem) <= kGapTolerance_mm;
-  return kept && better->cost < dropped.cost ? *better : dropped;
+  return kept && better->cost < settled.cost ? *better : settled;
 }
 
 [[noreturn]] void refuse(const PackItem& item, std::size_t number, const PackProblem& problem) {
@@ -278,9 +289,9 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   const std::size_t chosen =
       best_of(packings, problem.most_parts > 0 ? static_cast<std::size_t>(problem.most_parts)
                                                : problem.items.size());
-  Packing best =
-      with_gaps_kept(ways[chosen], searching.spec.grid, std::move(packings[chosen]), problem, pace);
-  if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);
+  Packing best = with_gaps_kept(ways[chosen], searching.spec.grid, packings[chosen], problem, pace);
+  if (problem.anywhere)
+    best = put_under(problem, packings[chosen], std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;
 }

@@ -59,7 +59,9 @@ class Rating {
   const Box3& contents_;
 };
 
-auto rank(const Spot& spot) { return std::tuple(spot.cost, spot.z, spot.y, spot.x, spot.rotation); }
+auto rank(const Spot& spot) {
+  return std::tuple(spot.cost, spot.top, spot.z, spot.y, spot.x, spot.rotation);
+}
 
 // The best of all rotations so far, and the blocks of positions that are looked at together: those
 // that come after them know what they found.
@@ -224,7 +226,8 @@ class Scan {
       if (z > block.give_up_above) continue;
       const std::int64_t waste = rating_.waste(z, sums[i]);
       if (waste > most_waste) continue;
-      Spot here{rotation_, xs.first + i, hunt.ys[index], z, 0, 0};
+      Spot here{
+          rotation_, xs.first + i, hunt.ys[index], z, 0, 0, static_cast<Height>(z + part_.rise)};
       here.cost = rating_.cost(here.x, here.y, z, waste);
       if (hunt.best && !(rank(here) < rank(*hunt.best))) continue;
       here.support_mm3 = part_.inside_support_mm3 + rating_.waste_mm3(waste);

@@ -22,12 +22,13 @@ struct Spot {
   Height z = 0;            // units
   double cost = 0;         // Cost::evaluate of the tray with the part on it
   double support_mm3 = 0;  // what the part adds
+  Height top = 0;          // units, of the part there
 };
 
-// The cheapest of all positions in all rotations. Of equal costs the lowest z wins, then the least
-// y, x and rotation, so the answer is always the same one. What is skipped is skipped for a proven
-// reason only: a bound of its cost exceeds the best so far. Empty where the part has no place on
-// this tray.
+// The cheapest of all positions in all rotations. Of equal costs the lowest top of the part wins,
+// then the lowest z, then the least y, x and rotation, so the answer is always the same one. What
+// is skipped is skipped for a proven reason only: a bound of its cost exceeds the best so far.
+// Empty where the part has no place on this tray.
 std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart* const> rotations,
                               double volume_mm3, const TraySpec& spec,
                               const PlaceRules& rules = {});

@@ -16,10 +16,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSearchShare = 0.8;  // of the packing's progress, and of its budget
 constexpr int kKickMoves = 2;
-constexpr double kDetour = 1.02;        // dearer than the best so far a layout on the way may be
-constexpr std::size_t kStartWays = 6;   // ways up in every turn for the first layout
-constexpr double kWorthKeeping = 1.05;  // of the cheapest cost
-constexpr std::size_t kMostKept = 3;
+constexpr double kDetour = 1.02;         // dearer than the best so far a layout on the way may be
+constexpr std::size_t kStartWays = 6;    // ways up in every turn for the first layout
+constexpr double kWorthKeeping = 1.05;   // of the cheapest cost
+constexpr std::size_t kKeptOfCount = 2;  // layouts of equally many parts
+constexpr std::size_t kMostKept = 4;
 
 void lower(std::atomic<double>& least, double value) {
   double known = least.load();
@@ -31,7 +32,7 @@ void lower(std::atomic<double>& least, double value) {
 std::optional<std::size_t> cheapest(const std::vector<std::optional<Layout>>& layouts) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < layouts.size(); ++i)
-    if (layouts[i] && (!best || layouts[i]->cost < layouts[*best]->cost)) best = i;
+    if (layouts[i] && (!best || is_better(*layouts[i], *layouts[*best]))) best = i;
   return best;
 }
 
@@ -100,19 +101,19 @@ class TabuSearch {
   void descend(Layout& current) {
     std::deque<std::vector<const Part*>> forbidden;
     int rounds_without_better = 0;
-    double reached = current.cost;
+    Layout reached = current;
     while (rounds_without_better < problem_.tabu_patience && !over()) {
       const std::vector<Move> moves = permitted(current, forbidden);
       std::vector<std::optional<Layout>> layouts = carried_out(moves);
       ++rounds_without_better;
       const std::optional<std::size_t> chosen = cheapest(layouts);
-      if (!chosen || layouts[*chosen]->cost > kDetour * reached) continue;
+      if (!chosen || layouts[*chosen]->cost > kDetour * reached.cost) continue;
       current = std::move(*layouts[*chosen]);
       forbidden.push_back(moves[*chosen].touched);
       if (static_cast<int>(forbidden.size()) > problem_.tabu_memory) forbidden.pop_front();
       keep(current);
-      if (current.cost < reached) {
-        reached = current.cost;
+      if (is_better(current, reached)) {
+        reached = current;
         rounds_without_better = 0;
       }
       if (is_better(current, best_)) improve(current);
@@ -176,18 +177,25 @@ class TabuSearch {
       if (!has_too_many(layout) && merged[*chosen]->cost > kWorthKeeping * best_.cost) break;
       layout = std::move(*merged[*chosen]);
       keep(layout);
-      if (layout.cost < best_.cost) improve(layout);
+      if (is_better(layout, best_)) improve(layout);
     }
   }
 
   void improve(const Layout& layout) {
+    const bool is_told = !best_.trays.empty() && layout.cost == best_.cost;
     best_ = layout;
-    if (on_better_) on_better_(layout.cost);
+    if (on_better_ && !is_told) on_better_(layout.cost);
   }
 
   void keep(const Layout& layout) {
-    const auto [known, is_new] = cheapest_.try_emplace(layout.parts(), layout);
-    if (!is_new && layout.cost < known->second.cost) known->second = layout;
+    std::vector<Layout>& known = cheapest_[layout.parts()];
+    const auto same = std::find_if(known.begin(), known.end(), [&layout](const Layout& other) {
+      return other.trays.size() == layout.trays.size() && other.cost == layout.cost;
+    });
+    if (same != known.end() && !is_better(layout, *same)) return;
+    if (same != known.end()) known.erase(same);
+    known.insert(std::lower_bound(known.begin(), known.end(), layout, is_better), layout);
+    if (known.size() > kKeptOfCount) known.pop_back();
   }
 
   bool has_too_many(const Layout& layout) const {
@@ -196,15 +204,13 @@ class TabuSearch {
 
   // Where merging did not lead to few enough parts, the fewest will do.
   std::vector<Layout> worth_keeping() const {
-    double least = kInfinity;
-    for (const auto& [parts, layout] : cheapest_)
-      if (!has_too_many(layout)) least = std::min(least, layout.cost);
-    if (std::isinf(least)) return {cheapest_.begin()->second};
     std::vector<Layout> layouts;
-    for (const auto& [parts, layout] : cheapest_)
-      if (!has_too_many(layout) && layout.cost <= kWorthKeeping * least) layouts.push_back(layout);
-    std::stable_sort(layouts.begin(), layouts.end(),
-                     [](const Layout& a, const Layout& b) { return a.cost < b.cost; });
+    for (const auto& [parts, known] : cheapest_)
+      if (layouts.empty() || !has_too_many(known.front()))
+        layouts.insert(layouts.end(), known.begin(), known.end());
+    std::stable_sort(layouts.begin(), layouts.end(), is_better);
+    const double limit = kWorthKeeping * layouts.front().cost;
+    std::erase_if(layouts, [limit](const Layout& layout) { return layout.cost > limit; });
     if (layouts.size() > kMostKept) layouts.resize(kMostKept);
     return layouts;
   }
@@ -216,7 +222,7 @@ class TabuSearch {
   const OnBetter& on_better_;
   Random random_;
   Layout best_;
-  std::map<int, Layout> cheapest_;  // by number of parts
+  std::map<int, std::vector<Layout>> cheapest_;  // by number of parts
 };
 
 }  // namespace

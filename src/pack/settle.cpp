@@ -19,6 +19,7 @@ constexpr int kTriesEach = 3;             // of a sideways step, while it helps
 constexpr double kWorthMoving_mm = 0.01;  // sunk deeper
 // Kept where no gap is asked for: at 0 a touch is not told from a cut.
 constexpr double kLeastApart_mm = 1e-4;
+constexpr double kOfTheRoom = 0.99;  // what a step may take of it
 
 struct Body {
   Body(const PackProblem& problem, const PlacedPart& part)
@@ -33,10 +34,12 @@ struct Body {
   int tray;
 };
 
-// A pose that was tried and the box there.
+// A pose that was tried, the box there and the least distance to another part, as far as it is
+// told.
 struct Tried {
   Pose pose;
   Box3 box;
+  double room_mm = 0;
 };
 
 class Settler {
@@ -54,7 +57,9 @@ class Settler {
   // Lowers a part, then moves it about while it sinks deeper. Returns where it ends.
   Pose settle(std::size_t index) {
     Body& body = bodies_[index];
-    Tried here = lowered(index, {body.pose, body.box});
+    Tried here{body.pose, body.box};
+    is_clear(index, here);
+    here = lowered(index, std::move(here));
     double left_mm = sideways_mm_;
     for (const double step : kSideways_mm)
       for (int i = 0; i < kTriesEach && step <= left_mm && may_sink(here); ++i) {
@@ -73,29 +78,39 @@ class Settler {
     return at.box.min().z() > kLeastStep_mm && pace_.passed() < 1;
   }
 
-  bool is_clear(std::size_t index, const Tried& at) const {
+  // Enters the room, too, where it is at least the gap.
+  bool is_clear(std::size_t index, Tried& at) const {
+    at.room_mm = 0;
     if (at.box.min().minCoeff() < 0 || (problem_.build_mm - at.box.max()).minCoeff() < 0)
       return false;
     const Body& body = bodies_[index];
+    double room = std::max(gap_mm_, kFirstStep_mm);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const Body& other = bodies_[i];
       if (i == index || other.tray != body.tray) continue;
-      if (at.box.exteriorDistance(other.box) >= gap_mm_) continue;
+      if (at.box.exteriorDistance(other.box) >= room) continue;
       pace_.tick();
-      if (surface_distance_mm(body.surface, at.pose, other.surface, other.pose, gap_mm_) < gap_mm_)
-        return false;
+      room = surface_distance_mm(body.surface, at.pose, other.surface, other.pose, room);
+      if (room < gap_mm_) return false;
     }
+    at.room_mm = room;
     return true;
   }
 
   static Tried shifted(const Tried& from, const Vec3& by) {
-    return {Eigen::Translation3d(by) * from.pose, from.box.translated(by)};
+    return {Eigen::Translation3d(by) * from.pose, from.box.translated(by), 0};
   }
 
-  // Straight down, by steps that are halved where the way is barred.
+  // Straight down, by steps that are halved where the way is barred. None is longer than the room
+  // before it and the gap after it together, so that none leads past what stands out of another
+  // part.
   Tried lowered(std::size_t index, Tried at) const {
-    for (double step = kFirstStep_mm; step > kLeastStep_mm && may_sink(at);) {
-      Tried next = shifted(at, Vec3(0, 0, -std::min(step, at.box.min().z())));
+    double step = kFirstStep_mm;
+    while (may_sink(at)) {
+      const double free_mm = kOfTheRoom * (at.room_mm + gap_mm_);
+      const double by_mm = std::min({step, free_mm, at.box.min().z()});
+      if (std::min(step, free_mm) <= kLeastStep_mm) break;
+      Tried next = shifted(at, Vec3(0, 0, -by_mm));
       if (is_clear(index, next))
         at = std::move(next);
       else
@@ -118,7 +133,7 @@ class Settler {
     }
     std::vector<std::optional<Tried>> found(motions.size());
     parallel_tasks(motions.size(), [&](std::size_t i) {
-      Tried moved{Eigen::Translation3d(0, 0, step_mm) * motions[i] * from.pose, {}};
+      Tried moved{Eigen::Translation3d(0, 0, step_mm) * motions[i] * from.pose, {}, 0};
       moved.box = bodies_[index].surface.box(moved.pose);
       if (is_clear(index, moved)) found[i] = lowered(index, std::move(moved));
     });

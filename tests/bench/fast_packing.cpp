@@ -63,7 +63,8 @@ ReferencePacking FastPacker::pack(const std::vector<std::vector<RotatedPart>>& p
     tray.put(*rotations[static_cast<std::size_t>(spot->rotation)], spot->x, spot->y, spot->z,
              spot->support_mm3, volume, spec_);
     packing.cost = spot->cost;
-    packing.placed.push_back({index, spot->rotation, spot->x, spot->y, spot->z, 0, spot->cost});
+    packing.placed.push_back(
+        {index, spot->rotation, spot->x, spot->y, spot->z, spot->top, 0, spot->cost});
   }
   return packing;
 }

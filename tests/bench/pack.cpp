@@ -87,7 +87,7 @@ void require_same(const ReferencePacking& expected, const ReferencePacking& foun
 void measure_one_packing(PackProblem problem, Json& told) {
   problem.grid_mm = kPackingGrid_mm;
   problem.rotation_step = radians(kPackingStep_deg);
-  ReferencePacker reference(problem);
+  ReferencePacker reference(problem, Ties::kLowestTop);
   const FastPacker fast(problem, reference.unit_mm());
   const DrawnParts drawn = draw_items(problem, reference);
   std::vector<std::vector<RotatedPart>> parts;

@@ -64,8 +64,9 @@ struct ReferencePacker::Tray {
   }
 };
 
-ReferencePacker::ReferencePacker(const PackProblem& problem)
+ReferencePacker::ReferencePacker(const PackProblem& problem, Ties ties)
     : problem_(problem),
+      ties_(ties),
       unit_mm_(std::max(kFinestUnit_mm, problem.build_mm.z() / kMostUnits)),
       columns_(static_cast<int>(std::floor(problem.build_mm.x() / problem.grid_mm + 1e-9))),
       rows_(static_cast<int>(std::floor(problem.build_mm.y() / problem.grid_mm + 1e-9))) {
@@ -213,10 +214,12 @@ std::optional<ReferencePlacement> ReferencePacker::best(const Tray& tray,
       for (int x = 0; x < columns; ++x) {
         const auto at = static_cast<std::size_t>(y * columns + x);
         if (z[at] + top > highest) continue;
-        ReferencePlacement here{0, static_cast<int>(rotation), x, y, z[at], waste[at], 0};
+        ReferencePlacement here{0, static_cast<int>(rotation), x, y, z[at], z[at] + top, waste[at],
+                                0};
         here.cost = problem_.cost.evaluate(measure(tray, maps, volume_mm3, here));
-        const auto rank = [](const ReferencePlacement& p) {
-          return std::tuple(p.cost, p.z, p.y, p.x, p.rotation);
+        const auto rank = [this](const ReferencePlacement& p) {
+          const int first = ties_ == Ties::kLowestTop ? p.top : p.z;
+          return std::tuple(p.cost, first, p.z, p.y, p.x, p.rotation);
         };
         if (!best || rank(here) < rank(*best)) best = here;
       }

@@ -37,6 +37,7 @@ struct ReferencePlacement {
   int x = 0;  // cells
   int y = 0;
   int z = 0;        // units
+  int top = 0;      // units, of the part there
   int waste = 0;    // units, summed over the cells
   double cost = 0;  // of the tray with the part on it
 };
@@ -46,17 +47,23 @@ struct ReferencePacking {
   double cost = 0;                         // infinite where a part found no place
 };
 
+// Which of several places of equal cost is taken; the paper does not say. Both go on with the least
+// z, y, x and rotation.
+enum class Ties {
+  kLowestPlace,  // the plain rule: what the part stands on is lowest
+  kLowestTop,    // the packer's: the part's own top is lowest
+};
+
 class ReferencePacker {
  public:
   static constexpr Height kNothing = -32768;
 
   // Grid, rotation step, gap, support angle and cost are the problem's; it must outlive the packer.
-  explicit ReferencePacker(const PackProblem& problem);
+  explicit ReferencePacker(const PackProblem& problem, Ties ties = Ties::kLowestPlace);
 
   // Draws the maps of a part in every rotation that fits the build volume.
   std::vector<ReferenceMaps> draw(const ItemSet& items);
 
-  // Of equal costs the lowest place wins, then the least y, x and rotation.
   ReferencePacking pack(const std::vector<std::vector<ReferenceMaps>>& parts,
                         const std::vector<double>& volumes_mm3, const Order& order);
 
@@ -79,6 +86,7 @@ class ReferencePacker {
                       const ReferencePlacement& place) const;
 
   const PackProblem& problem_;
+  Ties ties_;
   double unit_mm_;
   int columns_;  // of the tray
   int rows_;

@@ -83,6 +83,14 @@ RC_GTEST_PROP(Pack, KeepsEveryPromiseForRandomParts, (std::uint64_t seed)) {
   }
 }
 
+// Without a gap, a step while settling once led a rim past another part's edge.
+TEST(Pack, NothingSinksPastWhatStandsOut) {
+  Random random(1873815);
+  const PackProblem problem = random_problem(random);
+  EXPECT_EQ(problem.gap_mm, 0);
+  check::expect_valid(problem, pack(problem, {}), 0.5);
+}
+
 void expect_same(const Packing& a, const Packing& b) {
   ASSERT_EQ(a.parts.size(), b.parts.size());
   EXPECT_EQ(a.cost, b.cost);

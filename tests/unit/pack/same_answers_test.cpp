@@ -54,7 +54,7 @@ PackProblem random_problem(Random& random) {
 RC_GTEST_PROP(SameAnswers, AsThePlainLoopsOverTheSameMaps, (std::uint64_t seed)) {
   Random random(seed);
   const PackProblem problem = random_problem(random);
-  ReferencePacker reference(problem);
+  ReferencePacker reference(problem, Ties::kLowestTop);
   const FastPacker fast(problem, reference.unit_mm());
   std::vector<std::vector<ReferenceMaps>> maps;
   std::vector<std::vector<RotatedPart>> parts;
