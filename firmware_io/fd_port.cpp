@@ -26,6 +26,15 @@ namespace {
               "Check the cable and the printer's power, then print the job again.");
 }
 
+// An unplugged serial port reads as the end of a file, a dead pseudo-terminal as EIO; a socket
+// tells how its line died.
+bool is_gone(int error) {
+  for (const int one :
+       {EIO, ENXIO, ENODEV, ECONNRESET, EPIPE, ETIMEDOUT, EHOSTUNREACH, ENETUNREACH, ECONNABORTED})
+    if (error == one) return true;
+  return false;
+}
+
 bool try_again(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
 }  // namespace
@@ -44,17 +53,18 @@ std::size_t FdPort::read(char* data, std::size_t size, double timeout_s) {
   if (!wait(POLLIN, timeout_s)) return 0;
   const ssize_t count = ::read(fd_, data, size);
   if (count > 0) return static_cast<std::size_t>(count);
-  // An unplugged serial port reads as the end of a file, a dead pseudo-terminal as EIO.
-  if (count == 0 || errno == EIO || errno == ENXIO || errno == ENODEV) throw_gone(name_);
+  if (count == 0 || is_gone(errno)) throw_gone(name_);
   if (try_again(errno)) return 0;
   throw_failed(name_, "read", errno);
 }
 
+ssize_t FdPort::put(std::string_view bytes) { return ::write(fd_, bytes.data(), bytes.size()); }
+
 std::size_t FdPort::write(std::string_view bytes, double timeout_s) {
   while (true) {
-    const ssize_t count = ::write(fd_, bytes.data(), bytes.size());
+    const ssize_t count = put(bytes);
     if (count >= 0) return static_cast<std::size_t>(count);
-    if (errno == EIO || errno == ENXIO || errno == ENODEV) throw_gone(name_);
+    if (is_gone(errno)) throw_gone(name_);
     if (!try_again(errno)) throw_failed(name_, "write to", errno);
     if (!wait(POLLOUT, std::exchange(timeout_s, 0))) return 0;
   }

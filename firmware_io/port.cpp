@@ -26,11 +26,6 @@ namespace {
               hint);
 }
 
-[[noreturn]] void throw_busy(const std::string& address) {
-  throw Error(Fault::kBusy, "The port " + address + " is held by another program",
-              "End the program that uses the printer, or wait until its print is done.");
-}
-
 // libserialport knows a port by its real name only, and so does the lock.
 std::string resolve(const std::string& address) {
   char path[PATH_MAX];
@@ -63,7 +58,15 @@ double Port::now_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+void throw_busy(const std::string& address) {
+  throw Error(Fault::kBusy, "The port " + address + " is held by another program",
+              "End the program that uses the printer, or wait until its print is done.");
+}
+
+bool is_tcp(const std::string& address) { return address.starts_with(kTcpPrefix); }
+
 std::unique_ptr<Port> open_port(const std::string& address, int baud) {
+  if (is_tcp(address)) return open_tcp_port(address);
   const std::string path = resolve(address);
   Descriptor lock = lock_port(path, address);
   if (auto port = open_serial_port(path, address, baud, lock)) return port;

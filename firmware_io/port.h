@@ -34,9 +34,14 @@ class Port {
 // device such as /dev/ttyACM0 or a link to one (/dev/serial/by-id/…; it is resolved first). Real
 // serial ports go through libserialport; terminals that it refuses (pseudo-terminals) are opened
 // through termios. The port is locked against every other program (TIOCEXCL and flock), and
-// closing it does not pull DTR down (HUPCL cleared). Opening may reset the printer.
-// Throws Error{kUnavailable} when there is no such port or it may not be opened, Error{kBusy} when
-// another program holds it, Error{kUsage} for a baud rate that the system does not know.
+// closing it does not pull DTR down (HUPCL cleared). Opening may reset the printer. tcp:HOST:PORT
+// is a serial server (raw TCP, the baud rate is the server's); it is locked against our own
+// programs. Throws Error{kUnavailable} when there is no such port or it may not be opened,
+// Error{kBusy} when another program holds it, Error{kUsage} for a baud rate that the system does
+// not know.
 std::unique_ptr<Port> open_port(const std::string& address, int baud);
+
+// Whether an address is that of a serial server, and so of no device.
+bool is_tcp(const std::string& address);
 
 }  // namespace packmerger

@@ -111,10 +111,11 @@ void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig&
     printer.folder = resolved(file, text);
     return true;
   });
-  reader.text("port", "a device such as /dev/serial/by-id/…", [&](const std::string& text) {
-    printer.port = text;
-    return true;
-  });
+  reader.text("port", "a device such as /dev/serial/by-id/…, or tcp:HOST:PORT",
+              [&](const std::string& text) {
+                printer.port = text;
+                return true;
+              });
   reader.text("handoff_folder", "the path of a folder", [&](const std::string& text) {
     printer.handoff_folder = resolved(file, text);
     return true;

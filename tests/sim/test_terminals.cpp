@@ -1,104 +1,18 @@
 // Whole prints over real pseudo-terminals: the links on one side, a simulated printer on the other.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <cstdlib>
-#include <fstream>
 #include <future>
-#include <optional>
-#include <sstream>
-#include <thread>
 
-#include "base/files.h"
 #include "base/process.h"
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g_link.h"
-#include "firmware_io/simulated/simulator.h"
+#include "firmware_io/port.h"
 #include "sim/programs.h"
+#include "sim/terminal_printer.h"
 
 namespace packmerger::test {
 namespace {
 
 using ::testing::HasSubstr;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-enum class Machine { kReplicator, kMarlin };
-
-// A simulated printer on a thread of its own; ends with the object, or before by unplug().
-class Printer {
- public:
-  Printer(Machine machine, double speed) {
-    options_.speed = speed;
-    options_.record = folder_.path() / "record.txt";
-    std::promise<std::string> path;
-    auto ready = path.get_future();
-    thread_ = std::thread([this, machine, promise = std::move(path)]() mutable {
-      const auto listening = [&](const std::string& at) { promise.set_value(at); };
-      if (machine == Machine::kReplicator)
-        run_simulated_replicator(options_, listening, stop_);
-      else
-        run_simulated_marlin(options_, listening, stop_);
-    });
-    path_ = ready.get();
-  }
-  Printer(const Printer&) = delete;
-  Printer& operator=(const Printer&) = delete;
-  ~Printer() { unplug(); }
-
-  void unplug() {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
-
-  const std::string& path() const { return path_; }
-  const fs::path& folder() const { return folder_.path(); }
-
-  std::vector<std::string> record() const {
-    std::ifstream file(options_.record);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(file, line);) lines.push_back(line);
-    return lines;
-  }
-
- private:
-  TemporaryFolder folder_;
-  SimulatorOptions options_;
-  std::atomic<bool> stop_{false};
-  std::string path_;
-  std::thread thread_;
-};
-
-StreamOptions options() {
-  StreamOptions options;
-  options.boot_wait_s = 0.05;
-  options.safe_gcode = "M104 S0\nM140 S0\n";
-  return options;
-}
-
-std::optional<Error> print(Machine machine, const std::string& address, const std::string& program,
-                           PrintControl& control, const PrintListener& listener = {}) {
-  try {
-    const auto port = open_port(address, 115200);
-    if (machine == Machine::kReplicator)
-      print_x3g(*port, program, options(), listener, control);
-    else
-      print_gcode(*port, program, options(), listener, control);
-  } catch (const Error& error) {
-    return error;
-  }
-  return std::nullopt;
-}
-
-std::string program_of(Machine machine, std::size_t moves) {
-  return machine == Machine::kReplicator ? x3g_program(moves).bytes : joined(gcode_program(moves));
-}
 
 TEST(Terminals, ReplicatorExecutesTheProgram) {
   Printer printer(Machine::kReplicator, 0);
@@ -115,10 +29,7 @@ TEST(Terminals, MarlinExecutesTheProgram) {
   const auto failure =
       print(Machine::kMarlin, printer.path(), program_of(Machine::kMarlin, 5000), control);
   EXPECT_FALSE(failure) << failure->what();
-  std::vector<std::string> expected = {"M115", "M27", "M110 N0"};
-  for (const std::string& line : gcode_program(5000)) expected.push_back(line);
-  expected.insert(expected.end(), {"M400", "M114"});
-  EXPECT_EQ(printer.record(), expected);
+  EXPECT_EQ(printer.record(), executed_by_marlin(5000));
 }
 
 TEST(Terminals, PrintsOneJobAfterTheOther) {
