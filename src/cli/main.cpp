@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   packmerger::cli::add_compare(program);
   packmerger::cli::add_send(program);
   packmerger::cli::add_profiles(program);
+  packmerger::cli::add_devices(program);
   packmerger::cli::add_jobs(program);
   packmerger::cli::add_printers(program);
   packmerger::cli::add_simulate(program);

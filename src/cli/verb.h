@@ -12,6 +12,7 @@ namespace packmerger::cli {
 void add_prepare(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profiles(CLI::App& program);
+void add_devices(CLI::App& program);
 void add_send(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_jobs(CLI::App& program);

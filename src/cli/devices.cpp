@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/error.h"
+#include "cli/daemon_verb.h"
+#include "cli/verb.h"
+#include "firmware_io/devices.h"
+#include "model/printer.h"
+
+namespace packmerger::cli {
+namespace {
+
+using nlohmann::json;
+
+// The profiles that name this USB device as theirs. Chips that many machines have match, too.
+std::vector<std::string> profiles_for(const std::string& usb_id) {
+  std::vector<std::string> matching;
+  if (usb_id.empty()) return matching;
+  for (const std::string& id : profile_ids()) {
+    const std::vector<std::string> ids = read_profile(id).link.usb_ids;
+    if (std::find(ids.begin(), ids.end(), usb_id) != ids.end()) matching.push_back(id);
+  }
+  return matching;
+}
+
+// The daemon's printers; none where no daemon runs.
+json configured_printers(const DaemonArguments& arguments) {
+  try {
+    return ask(arguments, {{"verb", "printers.list"}});
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kUnavailable) throw;
+    return json::array();
+  }
+}
+
+// The configured printer at this port, which may be named by a link; null: none.
+json printer_at(const std::string& port, const json& printers) {
+  for (const json& printer : printers)
+    if (is_same_device(text_of(printer, "port"), port)) return printer.at("name");
+  return nullptr;
+}
+
+json usb_json(const UsbIdentity& usb) {
+  const auto or_null = [](const std::string& text) { return text.empty() ? json() : json(text); };
+  return {{"usb_id", or_null(usb.id)},
+          {"serial_number", or_null(usb.serial_number)},
+          {"manufacturer", or_null(usb.manufacturer)},
+          {"product", or_null(usb.product)},
+          {"profiles", profiles_for(usb.id)}};
+}
+
+json devices_json(const Devices& devices, const json& printers) {
+  json serial = json::array();
+  for (const SerialDevice& device : devices.serial) {
+    json one = usb_json(device.usb);
+    one["port"] = device.port;
+    one["link"] = device.link.empty() ? json() : json(device.link);
+    one["driver"] = device.driver.empty() ? json() : json(device.driver);
+    one["may_open"] = device.may_open;
+    one["printer"] = printer_at(device.port, printers);
+    serial.push_back(std::move(one));
+  }
+  json usb = json::array();
+  for (const UsbDevice& device : devices.usb) {
+    json one = usb_json(device.usb);
+    one["at"] = device.at;
+    one["is_printer"] = device.is_printer;
+    one["may_open"] = device.may_open;
+    usb.push_back(std::move(one));
+  }
+  return {{"serial", serial}, {"usb", usb}};
+}
+
+std::string or_dash(const std::string& text) { return text.empty() ? "-" : text; }
+
+std::vector<std::string> row_of(const json& device, const char* place, const std::string& driver) {
+  return {text_of(device, place),
+          or_dash(text_of(device, "usb_id")),
+          or_dash(text_of(device, "serial_number")),
+          or_dash(text_of(device, "product")),
+          or_dash(driver),
+          or_dash(fmt::format("{}", fmt::join(device.at("profiles"), ", "))),
+          or_dash(text_of(device, "printer"))};
+}
+
+void print_text(const json& told) {
+  std::vector<std::vector<std::string>> rows = {
+      {"AT", "USB ID", "SERIAL NUMBER", "PRODUCT", "DRIVER", "PROFILE", "PRINTER"}};
+  for (const json& device : told.at("serial"))
+    rows.push_back(row_of(device, "port", text_of(device, "driver")));
+  for (const json& device : told.at("usb"))
+    rows.push_back(row_of(device, "at", device.at("is_printer") ? "(printer class)" : ""));
+  if (rows.size() == 1) {
+    fmt::print(stderr,
+               "No serial port and no USB device is here. Connect a printer, switch it on "
+               "and try again.\n");
+    return;
+  }
+  print_table(rows);
+  for (const json& device : told.at("serial")) {
+    if (!text_of(device, "link").empty())
+      fmt::print("{} stays {}\n", text_of(device, "port"), text_of(device, "link"));
+    if (!device.at("may_open").get<bool>())
+      fmt::print(stderr,
+                 "You may not open {}: add your user to the group that owns it (on Debian: "
+                 "dialout).\n",
+                 text_of(device, "port"));
+  }
+}
+
+}  // namespace
+
+void add_devices(CLI::App& program) {
+  auto arguments = std::make_shared<DaemonArguments>();
+  CLI::App* verb = program.add_subcommand(
+      "devices", "The serial ports and USB devices here, and the profile that each matches");
+  add_daemon_options(*verb, *arguments);
+  verb->callback([arguments] {
+    const json told = devices_json(connected_devices(), configured_printers(*arguments));
+    if (arguments->json) return print_json(told);
+    print_text(told);
+  });
+}
+
+}  // namespace packmerger::cli
