@@ -136,7 +136,10 @@ RC_GTEST_PROP(SolidPart, SpansHoldAllMatterAndLittleElse, (std::uint64_t seed)) 
   for (const SpanCell& cell : part.centres) {
     const Vec3 middle((cell.x + 0.5) * grid.cell_mm, (cell.y + 0.5) * grid.cell_mm,
                       (cell.low + cell.high) / 2.0 * grid.unit_mm);
-    if (cell.high - cell.low > 4) RC_ASSERT(inside(mesh, middle));
+    if (cell.high - cell.low <= 4) continue;
+    // An emptiness thinner than a unit, where the line grazes an edge, is not told.
+    const Vec3 unit(0, 0, grid.unit_mm);
+    RC_ASSERT(inside(mesh, middle) || (inside(mesh, middle - unit) && inside(mesh, middle + unit)));
   }
 }
 
