@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 #include <memory>
 
 #include "base/error.h"
@@ -14,15 +14,14 @@ namespace {
 
 using nlohmann::json;
 
-// The profiles that name this USB device as theirs. Chips that many machines have match, too.
-std::vector<std::string> profiles_for(const std::string& usb_id) {
-  std::vector<std::string> matching;
-  if (usb_id.empty()) return matching;
-  for (const std::string& id : profile_ids()) {
-    const std::vector<std::string> ids = read_profile(id).link.usb_ids;
-    if (std::find(ids.begin(), ids.end(), usb_id) != ids.end()) matching.push_back(id);
-  }
-  return matching;
+// By USB id the profiles that name it as theirs. Chips that many machines have are among them.
+using ProfilesByUsbId = std::map<std::string, std::vector<std::string>>;
+
+ProfilesByUsbId profiles_by_usb_id() {
+  ProfilesByUsbId profiles;
+  for (const std::string& id : profile_ids())
+    for (const std::string& usb_id : read_profile(id).link.usb_ids) profiles[usb_id].push_back(id);
+  return profiles;
 }
 
 // The daemon's printers; none where no daemon runs.
@@ -42,19 +41,21 @@ json printer_at(const std::string& port, const json& printers) {
   return nullptr;
 }
 
-json usb_json(const UsbIdentity& usb) {
+json usb_json(const UsbIdentity& usb, const ProfilesByUsbId& profiles) {
   const auto or_null = [](const std::string& text) { return text.empty() ? json() : json(text); };
+  const auto known = profiles.find(usb.id);
   return {{"usb_id", or_null(usb.id)},
           {"serial_number", or_null(usb.serial_number)},
           {"manufacturer", or_null(usb.manufacturer)},
           {"product", or_null(usb.product)},
-          {"profiles", profiles_for(usb.id)}};
+          {"profiles", known == profiles.end() ? std::vector<std::string>{} : known->second}};
 }
 
 json devices_json(const Devices& devices, const json& printers) {
+  const ProfilesByUsbId profiles = profiles_by_usb_id();
   json serial = json::array();
   for (const SerialDevice& device : devices.serial) {
-    json one = usb_json(device.usb);
+    json one = usb_json(device.usb, profiles);
     one["port"] = device.port;
     one["link"] = device.link.empty() ? json() : json(device.link);
     one["driver"] = device.driver.empty() ? json() : json(device.driver);
@@ -64,7 +65,7 @@ json devices_json(const Devices& devices, const json& printers) {
   }
   json usb = json::array();
   for (const UsbDevice& device : devices.usb) {
-    json one = usb_json(device.usb);
+    json one = usb_json(device.usb, profiles);
     one["at"] = device.at;
     one["is_printer"] = device.is_printer;
     one["may_open"] = device.may_open;

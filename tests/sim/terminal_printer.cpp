@@ -1,5 +1,8 @@
 #include "sim/terminal_printer.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <future>
 
@@ -63,6 +66,22 @@ std::optional<Error> print(Machine machine, const std::string& address, const st
     return error;
   }
   return std::nullopt;
+}
+
+void expect_failure_soon(Machine machine, const std::string& address,
+                         const std::function<void()>& lose_the_printer) {
+  PrintControl control;
+  auto done = std::async(std::launch::async, [&] {
+    return print(machine, address, program_of(machine, 2000), control);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  const auto begin = Clock::now();
+  lose_the_printer();
+  const auto failure = done.get();
+  EXPECT_LT(seconds_since(begin), 5);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kIo);
+  EXPECT_THAT(failure->what(), ::testing::HasSubstr("is gone"));
 }
 
 std::string program_of(Machine machine, std::size_t moves) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <thread>
@@ -46,6 +47,11 @@ class Printer {
 // What ended the print before its end.
 std::optional<Error> print(Machine machine, const std::string& address, const std::string& program,
                            PrintControl& control);
+
+// A print at a machine that works ten times as fast, while which the printer is lost: it must fail
+// within five seconds, saying so.
+void expect_failure_soon(Machine machine, const std::string& address,
+                         const std::function<void()>& lose_the_printer);
 
 std::string program_of(Machine machine, std::size_t moves);
 

@@ -8,7 +8,6 @@
 #include <sys/socket.h>
 
 #include <array>
-#include <future>
 
 #include "base/descriptor.h"
 #include "firmware_io/port.h"
@@ -115,19 +114,7 @@ TEST(SerialServers, PrinterExecutesTheProgram) {
 TEST(SerialServers, LostConnectionFailsSoonAndTheNextPrintRuns) {
   Printer printer(Machine::kReplicator, 10);
   SerialServer server(printer.path());
-  PrintControl control;
-  auto done = std::async(std::launch::async, [&] {
-    return print(Machine::kReplicator, server.address(), program_of(Machine::kReplicator, 2000),
-                 control);
-  });
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
-  const auto begin = Clock::now();
-  server.drop();
-  const auto failure = done.get();
-  EXPECT_LT(seconds_since(begin), 5);
-  ASSERT_TRUE(failure);
-  EXPECT_EQ(failure->fault(), Fault::kIo);
-  EXPECT_THAT(failure->what(), HasSubstr("is gone"));
+  expect_failure_soon(Machine::kReplicator, server.address(), [&] { server.drop(); });
   EXPECT_NO_THROW(open_port(server.address(), 115200));
 }
 
