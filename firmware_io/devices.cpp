@@ -1,7 +1,6 @@
 #include "firmware_io/devices.h"
 
 #include <libserialport.h>
-#include <libusb.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "firmware_io/usb_library.h"
 
 namespace packmerger {
 
@@ -90,26 +90,9 @@ std::vector<SerialDevice> serial_devices(std::set<BusAddress>& on_usb) {
   return devices;
 }
 
-// "1-4.2"; empty for a bus's own hub.
-std::string place_of(libusb_device* device) {
-  constexpr int kMostTiers = 7;  // of a USB tree
-  std::array<std::uint8_t, kMostTiers> ports;
-  const int count = libusb_get_port_numbers(device, ports.data(), kMostTiers);
-  std::string place;
-  for (int i = 0; i < count; ++i) {
-    place += place.empty() ? std::to_string(libusb_get_bus_number(device)) + "-" : ".";
-    place += std::to_string(ports[static_cast<std::size_t>(i)]);
-  }
-  return place;
-}
-
 bool has_printer_interface(libusb_device* device) {
-  libusb_config_descriptor* config = nullptr;
-  if (libusb_get_active_config_descriptor(device, &config) != 0 &&
-      libusb_get_config_descriptor(device, 0, &config) != 0)
-    return false;
-  const std::unique_ptr<libusb_config_descriptor, void (*)(libusb_config_descriptor*)> freed(
-      config, libusb_free_config_descriptor);
+  const usb::Configuration config = usb::configuration_of(device);
+  if (!config) return false;
   for (int i = 0; i < config->bNumInterfaces; ++i)
     for (int k = 0; k < config->interface[i].num_altsetting; ++k)
       if (config->interface[i].altsetting[k].bInterfaceClass == LIBUSB_CLASS_PRINTER) return true;
@@ -119,7 +102,7 @@ bool has_printer_interface(libusb_device* device) {
 // The texts are Linux's: libusb would have to open the device for them.
 UsbDevice described(libusb_device* device, const libusb_device_descriptor& descriptor) {
   UsbDevice found;
-  found.at = place_of(device);
+  found.at = usb::place_of(device);
   const fs::path folder = "/sys/bus/usb/devices/" + found.at;
   found.usb = {usb_id(descriptor.idVendor, descriptor.idProduct), first_line(folder / "serial"),
                first_line(folder / "manufacturer"), first_line(folder / "product")};
@@ -132,28 +115,17 @@ UsbDevice described(libusb_device* device, const libusb_device_descriptor& descr
 }
 
 std::vector<UsbDevice> usb_devices(const std::set<BusAddress>& serial_ports) {
-  libusb_context* context = nullptr;
-  if (const int failed = libusb_init(&context); failed != 0)
-    throw Error(Fault::kIo,
-                std::string("The system does not tell its USB devices: ") +
-                    libusb_strerror(static_cast<libusb_error>(failed)),
-                "Check that /sys and /dev/bus/usb are there.");
-  const std::unique_ptr<libusb_context, void (*)(libusb_context*)> ended(context, libusb_exit);
-  libusb_device** list = nullptr;
-  const ssize_t count = libusb_get_device_list(context, &list);
-  if (count < 0)
-    throw Error(Fault::kIo, "The system does not tell its USB devices",
-                "Check that /sys and /dev/bus/usb are there.");
+  const usb::Context context = usb::open_context();
   std::vector<UsbDevice> devices;
-  for (ssize_t i = 0; i < count; ++i) {
+  for (const usb::Device& device : usb::devices_of(context.get())) {
     libusb_device_descriptor descriptor{};
-    if (libusb_get_device_descriptor(list[i], &descriptor) != 0) continue;
+    if (libusb_get_device_descriptor(device.get(), &descriptor) != 0) continue;
     if (descriptor.bDeviceClass == LIBUSB_CLASS_HUB) continue;
-    if (serial_ports.contains({libusb_get_bus_number(list[i]), libusb_get_device_address(list[i])}))
+    if (serial_ports.contains(
+            {libusb_get_bus_number(device.get()), libusb_get_device_address(device.get())}))
       continue;
-    devices.push_back(described(list[i], descriptor));
+    devices.push_back(described(device.get(), descriptor));
   }
-  libusb_free_device_list(list, 1);
   std::sort(devices.begin(), devices.end(),
             [](const UsbDevice& a, const UsbDevice& b) { return a.at < b.at; });
   return devices;
@@ -167,6 +139,11 @@ bool is_same_device(const std::string& a, const std::string& b) {
   struct stat other {};
   return ::stat(a.c_str(), &one) == 0 && ::stat(b.c_str(), &other) == 0 &&
          one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+std::vector<SerialDevice> connected_serial_ports() {
+  std::set<BusAddress> on_usb;
+  return serial_devices(on_usb);
 }
 
 Devices connected_devices() {

@@ -15,11 +15,6 @@ namespace packmerger {
 
 namespace {
 
-[[noreturn]] void throw_gone(const std::string& name) {
-  throw Error(Fault::kIo, "The printer at " + name + " is gone",
-              "Check the cable and the printer's power, then print the job again.");
-}
-
 [[noreturn]] void throw_failed(const std::string& name, const char* verb, int error) {
   throw Error(Fault::kIo,
               std::string("Cannot ") + verb + " the port " + name + ": " + std::strerror(error),

@@ -30,6 +30,7 @@ class FdPort : public Port {
 inline constexpr const char* kTcpPrefix = "tcp:";
 
 [[noreturn]] void throw_busy(const std::string& address);
+[[noreturn]] void throw_gone(const std::string& address);
 
 // The first two take the locked port and throw as open_port() does. `path` is resolved, `name` is
 // for people. open_serial_port returns nothing where libserialport does not take the terminal for a

@@ -63,6 +63,11 @@ void throw_busy(const std::string& address) {
               "End the program that uses the printer, or wait until its print is done.");
 }
 
+void throw_gone(const std::string& address) {
+  throw Error(Fault::kIo, "The printer at " + address + " is gone",
+              "Check the cable and the printer's power, then print the job again.");
+}
+
 bool is_tcp(const std::string& address) { return address.starts_with(kTcpPrefix); }
 
 std::unique_ptr<Port> open_port(const std::string& address, int baud) {
