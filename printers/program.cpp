@@ -101,7 +101,7 @@ std::string to_x3g(const Profile& profile, const std::string& gcode, const std::
 
 std::optional<Program> make_program(const Profile& profile, const Tray& tray,
                                     const std::string& build_name, const Progress& progress) {
-  if (profile.dialect == Dialect::kHandoff) return std::nullopt;
+  if (!profile.is_sliced()) return std::nullopt;
   if (profile.dialect == Dialect::kS3g) check_s3g_start(profile);
   SlicedTray sliced = slice(profile, tray, SliceFlavour::kProgram, progress);
   check_volume(profile, sliced.gcode);

@@ -21,7 +21,7 @@ struct Program {
 // Slices the tray with the profile's start and end text, checks every move against the build
 // volume (printers/check_moves.h), and converts with gpx where the dialect is s3g. build_name is
 // what a Replicator shows while it builds; other characters than letters, digits, space, '-', '_'
-// and '.' are replaced, and it is cut to 31. nullopt for dialect handoff.
+// and '.' are replaced, and it is cut to 31. nullopt where no program is made (Profile::is_sliced).
 // Throws Error{kBadProfile} when an s3g start text lacks homing, position recall or a heat wait
 // (before anything is sliced), when a move leaves the build volume or cannot be judged;
 // kUnavailable when PrusaSlicer or gpx is not installed; and what slice() throws.

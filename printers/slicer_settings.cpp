@@ -123,7 +123,7 @@ bool same_value(std::string_view a, std::string_view b) {
 // The slicer fills whole cells of a grid with support: cells as wide as the space between two lines
 // and a line.
 double slicer_margin_mm(const Profile& profile) {
-  if (profile.dialect == Dialect::kHandoff) return 0;
+  if (!profile.is_sliced()) return 0;
   if (option(profile, "support_material", 0) == 0) return 0;
   return option(profile, "support_material_spacing", kSupportSpacingMm) +
          kLineNozzles * option(profile, "nozzle_diameter", kNozzleMm);

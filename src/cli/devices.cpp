@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
+#include "daemon/find_port.h"
 #include "firmware_io/devices.h"
 #include "model/printer.h"
 
@@ -34,10 +35,11 @@ json configured_printers(const DaemonArguments& arguments) {
   }
 }
 
-// The configured printer at this port, which may be named by a link; null: none.
-json printer_at(const std::string& port, const json& printers) {
+// The configured printer that this device is; null: none.
+template <typename Device>
+json printer_at(const Device& device, const json& printers) {
   for (const json& printer : printers)
-    if (is_same_device(text_of(printer, "port"), port)) return printer.at("name");
+    if (is_at(text_of(printer, "port"), device)) return printer.at("name");
   return nullptr;
 }
 
@@ -60,7 +62,7 @@ json devices_json(const Devices& devices, const json& printers) {
     one["link"] = device.link.empty() ? json() : json(device.link);
     one["driver"] = device.driver.empty() ? json() : json(device.driver);
     one["may_open"] = device.may_open;
-    one["printer"] = printer_at(device.port, printers);
+    one["printer"] = printer_at(device, printers);
     serial.push_back(std::move(one));
   }
   json usb = json::array();
@@ -69,6 +71,7 @@ json devices_json(const Devices& devices, const json& printers) {
     one["at"] = device.at;
     one["is_printer"] = device.is_printer;
     one["may_open"] = device.may_open;
+    one["printer"] = printer_at(device, printers);
     usb.push_back(std::move(one));
   }
   return {{"serial", serial}, {"usb", usb}};

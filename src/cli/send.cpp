@@ -51,10 +51,17 @@ class Teller {
   std::optional<PrintState> state_;
 };
 
+std::string find_printer(const Profile& profile) {
+  const std::vector<std::string>& usb_ids = profile.link.usb_ids;
+  if (profile.is_sliced()) return find_port(connected_serial_ports(), "", usb_ids);
+  if (profile.dialect == Dialect::kUsb)
+    return stable_address(find_usb_printer(connected_devices().usb, "", usb_ids));
+  return {};
+}
+
 void stream(const Arguments& arguments, int trays) {
   const Profile profile = read_prepared_profile(arguments.folder);
-  const bool searches = arguments.port.empty() && profile.dialect != Dialect::kHandoff;
-  const std::string port = searches ? find_port(profile.link.usb_ids) : arguments.port;
+  const std::string port = arguments.port.empty() ? find_printer(profile) : arguments.port;
   {
     const Progress progress = terminal_progress();
     PrintControl control(&interrupted());
@@ -95,8 +102,9 @@ void add_send(CLI::App& program) {
   CLI::App* verb =
       program.add_subcommand("send", "Streams a prepared job to its printer, or hands it over");
   verb->add_option("DIR", arguments->folder, "the job folder that prepare made")->required();
-  CLI::Option* port = verb->add_option(
-      "--port", arguments->port, "the printer's port; default: the one its USB id is found at");
+  CLI::Option* port = verb->add_option("--port", arguments->port,
+                                       "the printer's port: a device, usb:VID:PID:SERIAL or "
+                                       "tcp:HOST:PORT; default: the one its USB id is found at");
   CLI::Option* tray = verb->add_option("--tray", arguments->tray, "which tray of several")
                           ->check(CLI::PositiveNumber);
   verb->add_option("--to", arguments->to,

@@ -30,11 +30,11 @@ double checked_speed(double speed) {
 
 void simulate(const Arguments& arguments) {
   const Profile profile = read_profile(arguments.profile);
-  if (profile.dialect == Dialect::kHandoff)
-    throw Error(Fault::kUsage,
-                "There is nothing to simulate for " + profile.id +
-                    ": its files are handed over to the maker's own program, not sent",
-                "Choose a profile whose dialect is s3g or gcode, such as replicator or marlin.");
+  if (!profile.is_sliced())
+    throw Error(
+        Fault::kUsage,
+        "There is nothing to simulate for " + profile.id + ": it is given documents, not programs",
+        "Choose a profile whose dialect is s3g or gcode, such as replicator or marlin.");
   const SimulatorOptions options{checked_speed(arguments.speed), arguments.record};
   const Progress signals = terminal_progress();  // for interrupted()
   const ListeningAt listening = [&](const std::string& path) {

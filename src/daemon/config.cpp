@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "base/process.h"
 #include "daemon/config_table.h"
+#include "daemon/find_port.h"
 
 namespace packmerger {
 namespace {
@@ -111,7 +112,7 @@ void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig&
     printer.folder = resolved(file, text);
     return true;
   });
-  reader.text("port", "a device such as /dev/serial/by-id/…, or tcp:HOST:PORT",
+  reader.text("port", "a device such as /dev/serial/by-id/…, usb:VID:PID:SERIAL, or tcp:HOST:PORT",
               [&](const std::string& text) {
                 printer.port = text;
                 return true;
@@ -154,6 +155,14 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
     refuse(file, line, table + " cannot have a port: this printer takes no job by wire");
   if (!printer.hands_over() && printer.port.empty())
     refuse(file, line, table + " needs the key port");
+  try {
+    check_address(printer.port);
+  } catch (const Error& error) {
+    refuse(file, line, table + ": " + error.what() + ". " + error.hint());
+  }
+  if (printer.abilities.dialect == Dialect::kUsb && !is_usb(printer.port))
+    refuse(file, line,
+           table + " needs a port usb:VID:PID or usb:VID:PID:SERIAL: its dialect is usb");
   if (!printer.hands_over() && !printer.handoff_folder.empty())
     refuse(file, line, table + " cannot have a handoff_folder: this printer is sent its job");
 }

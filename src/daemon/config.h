@@ -35,7 +35,7 @@ struct PrinterConfig {
   std::string profile;                   // an id, or the absolute path of a TOML file
   Profile abilities;                     // that profile, as it read at the start
   std::filesystem::path folder;          // the watched folder
-  std::string port;                      // dialects gcode and s3g
+  std::string port;                      // dialects gcode, s3g and usb
   std::filesystem::path handoff_folder;  // dialect handoff
   Approve approve = Approve::kAsk;
   bool simulated = false;                    // no bed has to be cleared

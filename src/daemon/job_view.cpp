@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/find_port.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
 
@@ -128,7 +129,7 @@ Waits waits_for(const Foreman& foreman, const JobRecord& job) {
   if (foreman.sending_at(job.printer) != 0) return Waits::kPrinterBusy;
   if (printer->has_bed() && !record.bed_clear) return Waits::kClearBed;
   std::error_code ignored;
-  if (!printer->hands_over() && !is_tcp(printer->port) &&
+  if (!printer->hands_over() && !is_tcp(printer->port) && !is_usb(printer->port) &&
       !std::filesystem::exists(printer->port, ignored))
     return Waits::kNotConnected;
   return Waits::kNothing;

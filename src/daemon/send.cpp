@@ -9,6 +9,7 @@
 #include "firmware_io/gcode_link.h"
 #include "firmware_io/port.h"
 #include "firmware_io/s3g_link.h"
+#include "firmware_io/usb_link.h"
 
 namespace packmerger {
 namespace {
@@ -47,13 +48,21 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
   if (tray < 1 || tray > job.trays)
     throw Error(Fault::kNoInput, fmt::format("The job has no tray {}", tray),
                 fmt::format("It has {}; name one of them with --tray.", job.trays));
+  const StreamOptions options = stream_options(profile, job, tray);
+  if (profile.dialect == Dialect::kUsb) {
+    const UsbDevice device = find_usb_printer(connected_devices().usb, port, profile.link.usb_ids);
+    const fs::path document =
+        tray_path(job_folder, "tray", tray, document_extension(profile.document));
+    return print_usb(*open_usb_port(device, port), document, profile.link.device_id, options,
+                     listener, control);
+  }
   const bool is_gcode = profile.dialect == Dialect::kGcode;
   const std::string program = read_file(
       tray_path(job_folder, "program", tray, is_gcode ? ".gcode" : ".x3g"), kMaxProgramBytes);
   is_gcode ? check_gcode(program) : check_x3g(program);
-  check_port(port, profile.link.usb_ids);
-  const std::unique_ptr<Port> channel = open_port(port, profile.link.baud);
-  const StreamOptions options = stream_options(profile, job, tray);
+  const std::string at =
+      is_tcp(port) ? port : find_port(connected_serial_ports(), port, profile.link.usb_ids);
+  const std::unique_ptr<Port> channel = open_port(at, profile.link.baud);
   const auto print = is_gcode ? print_gcode : print_x3g;
   print(*channel, program, options, listener, control);
 }

@@ -1,5 +1,6 @@
-// Giving a prepared job to its printer: streaming a tray's program, or handing its document over
-// in a folder where the printer takes no job by wire.
+// Giving a prepared job to its printer: streaming a tray's program, or its document to a
+// printer of dialect usb, or handing the document over in a folder where the printer takes no job
+// by wire.
 #pragma once
 
 #include <string>
@@ -9,8 +10,9 @@
 
 namespace packmerger {
 
-// Streams the program of one tray (from 1) to the printer at `port` and returns when the printer
-// has executed all of it. Reads job.json and profile.toml of the folder; the profile's dialect,
+// Streams the program of one tray (from 1) to the printer at `port` (daemon/find_port.h) and
+// returns when the printer has executed all of it; a printer of dialect usb, when it has taken its
+// document. Reads job.json and profile.toml of the folder; the profile's dialect,
 // baud rate and limits apply. Throws
 //   Error{kNoInput}      no job folder, or no such tray;
 //   Error{kBadInput}     the program cannot be sent;

@@ -88,7 +88,7 @@ Arrangement arrange(const Models& models, const PackProblem& problem, const Pack
 // Sliced trays stand in the middle of the plate, where no clip, edge or priming line is in the way.
 // What is handed over is moved by the maker's program as it likes.
 void centre(Arrangement& arrangement, const Profile& profile) {
-  if (profile.dialect == Dialect::kHandoff) return;
+  if (!profile.is_sliced()) return;
   std::vector<Box3> contents(arrangement.trays);
   for (const JobPart& part : arrangement.parts)
     contents[part.tray - 1].extend(bounding_box(transformed(part.surface, part.pose)));

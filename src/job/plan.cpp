@@ -66,9 +66,8 @@ std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const
                                     const Progress& progress) {
   if (!way) return std::nullopt;
   const std::vector<Tray> trays = trays_of(*way);
-  return profile.dialect == Dialect::kHandoff
-             ? estimate(profile, trays, assembly_of(*way), progress)
-             : estimate_by_slicer(profile, trays, assembly_of(*way), progress);
+  return profile.is_sliced() ? estimate_by_slicer(profile, trays, assembly_of(*way), progress)
+                             : estimate(profile, trays, assembly_of(*way), progress);
 }
 
 bool same_poses(const Arrangement& a, const Arrangement& b) {

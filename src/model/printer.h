@@ -15,12 +15,12 @@
 namespace packmerger {
 
 enum class Technology { kPolyjet, kFdm };
-enum class Dialect { kHandoff, kGcode, kS3g };       // what the printer is given
-enum class Objective { kPaper, kPrinter, kHeight };  // what the packer minimises
-enum class Placement { kDrop, kAnywhere };           // how parts come to their places
-enum class Segmentation { kPaper, kPrinter };        // how the shell is divided
-enum class Origin { kFrontLeft, kCenter };           // of the machine's own coordinates
-enum class FdmTime { kDeposition, kToolpath };       // which FDM estimator fits the machine
+enum class Dialect { kHandoff, kGcode, kS3g, kUsb };  // what the printer is given
+enum class Objective { kPaper, kPrinter, kHeight };   // what the packer minimises
+enum class Placement { kDrop, kAnywhere };            // how parts come to their places
+enum class Segmentation { kPaper, kPrinter };         // how the shell is divided
+enum class Origin { kFrontLeft, kCenter };            // of the machine's own coordinates
+enum class FdmTime { kDeposition, kToolpath };        // which FDM estimator fits the machine
 enum class HandoffDocument { kTrayStl, kTray3mf };
 
 // The geometry of a job: sections 3 to 6 of the paper.
@@ -115,12 +115,13 @@ struct SlicerSettings {
   std::string gpx_machine;  // gpx -m; dialect s3g
 };
 
-// How it is sent (dialects gcode and s3g).
+// How it is sent (dialects gcode, s3g and usb).
 struct LinkSettings {
   int baud = 115200;
   double timeout_s = 30;             // silence after which the printer counts as gone
   double boot_wait_s = 2;            // after opening, for boards that reset
   std::vector<std::string> usb_ids;  // "vvvv:pppp", lower-case hex
+  std::string device_id;             // dialect usb: part of the name the printer must tell
   std::string safe_gcode;            // sent after a failure or a cancel: heaters off
 };
 
@@ -143,6 +144,8 @@ struct Profile {
   SlicerSettings slicer;
   LinkSettings link;
 
+  // Whether a program is made for it; the others are given the tray as a document.
+  bool is_sliced() const { return dialect == Dialect::kGcode || dialect == Dialect::kS3g; }
   Vec3 build() const { return {build_mm[0], build_mm[1], build_mm[2]}; }
 };
 

@@ -62,10 +62,12 @@ void add_machine(Profile& p, std::vector<Key>& keys) {
        {"name", TextKey{&p.name, one_line()}, "", "The machine's name, for people.", true},
        {"technology", choice(p.technology, {"polyjet", "fdm"}), "",
         "Which estimator fits: jetted photopolymer in full support, or extruded filament.", true},
-       {"dialect", choice(p.dialect, {"handoff", "gcode", "s3g"}), "",
-        "What the printer is given: a document for its maker's program, G-code, or x3g.", true},
+       {"dialect", choice(p.dialect, {"handoff", "gcode", "s3g", "usb"}), "",
+        "What the printer is given: a document for its maker's program, G-code, x3g, or a document "
+        "over USB (printer class).",
+        true},
        {"document", choice(p.document, {"tray_stl", "tray_3mf"}), "",
-        "The document that dialect handoff delivers: tray.stl or tray.3mf."},
+        "The document that dialects handoff and usb deliver: tray.stl or tray.3mf."},
        {"build_mm", Numbers3Key{&p.build_mm, above(0, 2000)}, "mm",
         "The volume that may be printed in: x, y, z.", true},
        {"origin", choice(p.origin, {"front_left", "center"}), "",
@@ -252,6 +254,9 @@ void add_link(LinkSettings& s, std::vector<Key>& keys) {
                             "Wait after opening the port, for boards that reset then."},
                            {"link.usb_ids", TextsKey{&s.usb_ids, usb_form()}, "",
                             "USB vendor and product numbers the machine shows itself by."},
+                           {"link.device_id", TextKey{&s.device_id, one_line()}, "",
+                            "Text that must be part of the maker's and model's name that a printer "
+                            "of dialect usb tells (IEEE 1284)."},
                            {"link.safe_gcode", TextKey{&s.safe_gcode, {}}, "",
                             "Sent after a failure or a cancel: heaters off."}});
 }
@@ -278,9 +283,10 @@ std::string missing_for_abilities(const Profile& profile) {
   if (profile.technology == Technology::kFdm && profile.fdm.time == FdmTime::kDeposition &&
       profile.fdm.deposition_cm3_h <= 0)
     return "fdm.deposition_cm3_h must be above 0 where fdm.time is \"deposition\"";
-  if (profile.dialect == Dialect::kHandoff) return {};
+  if (!profile.is_sliced()) return {};
   if (profile.slicer.start_gcode.empty() || profile.slicer.end_gcode.empty())
-    return "slicer.start_gcode and slicer.end_gcode are required unless dialect is \"handoff\"";
+    return "slicer.start_gcode and slicer.end_gcode are required where dialect is \"gcode\" or "
+           "\"s3g\"";
   if (profile.dialect == Dialect::kS3g && profile.slicer.gpx_machine.empty())
     return "slicer.gpx_machine is required where dialect is \"s3g\"";
   return {};

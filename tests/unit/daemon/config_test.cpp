@@ -39,6 +39,17 @@ class ConfigTest : public testing::Test {
 
 const char* const kPrinter = "[printer.m]\nprofile = \"marlin\"\nport = \"/dev/ttyUSB0\"\n";
 
+TEST_F(ConfigTest, AddressesOnUsb) {
+  const auto printer = [](const std::string& profile, const std::string& port) {
+    return "[printer.m]\nprofile = \"" + profile + "\"\nport = \"" + port + "\"\n";
+  };
+  EXPECT_EQ(refusal(printer("marlin", "usb:23c1:D314:A:1")), "accepted");
+  EXPECT_THAT(refusal(printer("marlin", "usb:23c1")), HasSubstr("usb:VID:PID:SERIAL"));
+  const std::string set = "set = [\"dialect=usb\"]\n";
+  EXPECT_EQ(refusal(printer("objet30", "usb:0525:a4a8") + set), "accepted");
+  EXPECT_THAT(refusal(printer("objet30", "/dev/usb/lp0") + set), HasSubstr("its dialect is usb"));
+}
+
 TEST_F(ConfigTest, ReadsEveryKey) {
   const DaemonConfig config = read_config(write(R"(
 state = "state"

@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "daemon/find_port.h"
 #include "fixtures/fault_of.h"
 
 namespace packmerger {
@@ -80,40 +79,6 @@ TEST(MoveFile, FreePathCountsUpAndStaysWithinTheLimits) {
 
 TEST(MoveFile, MessagesHoldNoControlCharacters) {
   EXPECT_EQ(printable("a\nb\x1b[2J\xC3\xBC"), "a?b?[2J\xC3\xBC");
-}
-
-class FindPortTest : public testing::Test {
- protected:
-  void add(const std::string& name, const std::string& vendor, const std::string& product) {
-    const fs::path device = folder_.path() / "devices" / name;
-    const fs::path interface = device / "1-1:1.0";
-    fs::create_directories(interface / "tty" / name);
-    fs::create_directories(sys());
-    if (!vendor.empty()) write(device / "idVendor", vendor + "\n");
-    if (!product.empty()) write(device / "idProduct", product + "\n");
-    fs::create_directory_symlink(interface, interface / "tty" / name / "device");
-    fs::create_directory_symlink(interface / "tty" / name, sys() / name);
-  }
-  fs::path sys() const { return folder_.path() / "class"; }
-  TemporaryFolder folder_;
-};
-
-TEST_F(FindPortTest, FindsTheOneByItsUsbId) {
-  add("ttyACM0", "23c1", "d314");
-  add("ttyUSB0", "1a86", "7523");
-  add("ttyS0", "", "");
-  EXPECT_EQ(find_port({"23c1:d314", "23c1:b404"}, sys()), "/dev/ttyACM0");
-  EXPECT_EQ(usb_id_of_port("/dev/ttyUSB0", sys()), "1a86:7523");
-  EXPECT_EQ(usb_id_of_port("/dev/ttyS0", sys()), "");
-  EXPECT_EQ(fault_of([&] { find_port({"0000:0000"}, sys()); }), Fault::kUnavailable);
-  EXPECT_EQ(fault_of([&] { find_port({}, sys()); }), Fault::kUsage);
-  EXPECT_EQ(fault_of([&] { check_port("/dev/ttyUSB0", {"23c1:d314"}, sys()); }),
-            Fault::kUnavailable);
-  check_port("/dev/ttyACM0", {"23c1:d314"}, sys());
-  check_port("/dev/ttyS0", {"23c1:d314"}, sys());
-  check_port("/dev/pts/0", {"23c1:d314"}, sys());
-  add("ttyACM1", "23c1", "b404");
-  EXPECT_EQ(fault_of([&] { find_port({"23c1:d314", "23c1:b404"}, sys()); }), Fault::kUsage);
 }
 
 }  // namespace

@@ -339,5 +339,19 @@ TEST_F(ProfileTest, DeepAndWideTomlIsRefused) {
   refusal(many + "1]\n");
 }
 
+TEST(Profiles, AnyDocumentPrinterCanBeSetToUsb) {
+  for (const char* id : {"objet30", "uprint"}) {
+    Profile profile = read_profile(id);
+    EXPECT_EQ(profile.dialect, Dialect::kHandoff) << id;
+    set_profile_key(profile, "dialect=usb");
+    set_profile_key(profile, "document=tray_3mf");
+    set_profile_key(profile, "link.device_id=Print bridge");
+    EXPECT_NO_THROW(check_settings(profile)) << id;
+    EXPECT_EQ(profile.dialect, Dialect::kUsb);
+    EXPECT_EQ(profile.link.device_id, "Print bridge");
+    EXPECT_FALSE(profile.is_sliced());
+  }
+}
+
 }  // namespace
 }  // namespace packmerger
