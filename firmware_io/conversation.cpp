@@ -1,5 +1,7 @@
 #include "firmware_io/conversation.h"
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "base/error.h"
@@ -19,16 +21,41 @@ void write_all(Port& port, std::string_view bytes) {
   }
 }
 
+void check_not_ended(const PrintControl& control) {
+  if (control.cancelled() || control.stopped())
+    throw Error(Fault::kInterrupted, "Cancelled before the print began", "");
+}
+
+void check_machine(const std::string& port, const std::string& says, const std::string& wanted) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) ==
+           std::tolower(static_cast<unsigned char>(b));
+  };
+  if (std::search(says.begin(), says.end(), wanted.begin(), wanted.end(), same) != says.end() ||
+      wanted.empty())
+    return;
+  throw Error(Fault::kUnavailable,
+              "The profile wants \"" + wanted + "\", but the printer at " + port +
+                  " says that it is \"" + says + "\"",
+              "Name the right port, or correct the profile's link.machine.");
+}
+
+void throw_stopped() {
+  throw Error(Fault::kIo, "The printer was stopped at once, as somebody asked",
+              "Look at the machine, switch it off and on, then print the job again.");
+}
+
 Reporter::Reporter(const Port& port, const PrintListener& listener, std::size_t total)
     : port_(port), listener_(listener) {
   report_.total = total;
   tell();
 }
 
-void Reporter::state(PrintState state, std::string text) {
-  if (state == report_.state && text == report_.text) return;
+void Reporter::state(PrintState state, std::string text, std::vector<std::string> choices) {
+  if (state == report_.state && text == report_.text && choices == report_.choices) return;
   report_.state = state;
   report_.text = std::move(text);
+  report_.choices = std::move(choices);
   tell();
 }
 

@@ -2,125 +2,24 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 
 #include "base/error.h"
+#include "firmware_io/ascii.h"
 
 namespace packmerger {
 
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-bool starts_with_any_case(std::string_view text, std::string_view prefix) {
-  return text.size() >= prefix.size() &&
-         std::equal(prefix.begin(), prefix.end(), text.begin(), [](char a, char b) {
-           return std::tolower(static_cast<unsigned char>(a)) ==
-                  std::tolower(static_cast<unsigned char>(b));
-         });
-}
-
-bool has(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
-
-template <std::size_t N>
-bool one_of(std::string_view word, const std::array<std::string_view, N>& words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
+using ascii::has;
+using ascii::is_digit;
+using ascii::one_of;
+using ascii::trim;
 
 [[noreturn]] void refuse(const GcodeCommand& command, const std::string& why,
                          const std::string& hint) {
   throw Error(Fault::kBadInput, "Line " + std::to_string(command.line) + " of the program " + why,
               hint);
-}
-
-// The number after "Resend:", which firmwares write "Resend: 3", "Resend:3", "rs 3", "rs N3" or
-// "Resend: N:3"; 0 where there is none.
-std::size_t first_number(std::string_view text) {
-  std::size_t i = 0;
-  while (i < text.size() && !is_digit(text[i])) ++i;
-  std::size_t number = 0;
-  for (; i < text.size() && is_digit(text[i]) && number < 100'000'000; ++i)
-    number = number * 10 + static_cast<std::size_t>(text[i] - '0');
-  return number;
-}
-
-// What Marlin prints when it stops for good, and OctoPrint's list of errors that mean it will.
-bool tells_halt(std::string_view line) {
-  return has(line, "halted") || has(line, "kill() called") || has(line, "KILL caused") ||
-         has(line, "Watchdog barked");
-}
-
-bool tells_heater_failure(std::string_view line) {
-  static constexpr std::array<std::string_view, 6> kTexts = {
-      "Heating failed",    "Thermal Runaway",   "Thermal Malfunction",
-      "MAXTEMP triggered", "MINTEMP triggered", "Invalid extruder number"};
-  return std::any_of(kTexts.begin(), kTexts.end(),
-                     [&](std::string_view text) { return has(line, text); });
-}
-
-// The cause of a reset, which Marlin prints right after "start".
-bool tells_reset(std::string_view line) {
-  static constexpr std::array<std::string_view, 5> kTexts = {
-      "PowerUp", "External Reset", "Brown out Reset", "Watchdog Reset", "Software Reset"};
-  if (line == "start") return true;
-  if (!line.starts_with("echo:")) return false;
-  const std::string_view text = trim(line.substr(5));
-  return one_of(text, kTexts);
-}
-
-bool is_temperature(std::string_view line) {
-  return line.starts_with("T:") || line.starts_with("T0:") || line.starts_with("B:");
-}
-
-bool is_position(std::string_view line) { return line.starts_with("X:") && has(line, "Y:"); }
-
-bool is_ok(std::string_view line) {
-  return line.starts_with("ok") &&
-         (line.size() == 2 || !std::isalnum(static_cast<unsigned char>(line[2])));
-}
-
-void read_ok(std::string_view line, GcodeReply& reply) {
-  reply.kind = GcodeReplyKind::kOk;
-  reply.has_temperature = has(line, " T:") || has(line, " T0:") || has(line, " B:");
-  reply.has_position = has(line, "X:") && has(line, "Y:");
-  reply.has_firmware = has(line, "FIRMWARE_NAME:");
-}
-
-// Lines that begin with a word of their own; false where none does.
-bool read_by_prefix(std::string_view line, GcodeReply& reply) {
-  if (starts_with_any_case(line, "resend") || starts_with_any_case(line, "rs ")) {
-    reply.kind = GcodeReplyKind::kResend;
-    reply.number = first_number(line);
-  } else if (line.starts_with("echo:busy:") || line.starts_with("busy:")) {
-    reply.kind = GcodeReplyKind::kBusy;
-    reply.waiting = has(line, "paused for");
-  } else if (line == "wait") {
-    reply.kind = GcodeReplyKind::kIdle;
-  } else if (line.starts_with("//action:prompt_begin")) {
-    reply.kind = GcodeReplyKind::kPrompt;
-    reply.text = trim(line.substr(21));
-  } else if (line.starts_with("Cap:")) {
-    reply.kind = GcodeReplyKind::kCapability;
-    reply.text = line.substr(4);
-  } else if (has(line, "FIRMWARE_NAME:")) {
-    reply.kind = GcodeReplyKind::kFirmware;
-  } else if (has(line, "SD printing")) {
-    reply.kind = GcodeReplyKind::kCard;
-    reply.waiting = line.starts_with("SD printing byte");
-  } else {
-    return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -190,35 +89,36 @@ bool is_long(std::string_view command) {
   return one_of(gcode_word(command), kWords);
 }
 
+bool blocks(std::string_view command) { return is_heating(command) || is_long(command); }
+
+std::vector<std::string> gcode_modes(const std::vector<std::string>& commands, std::size_t count) {
+  std::size_t positions = count;  // the last G90 or G91
+  std::size_t extrusion = count;  // the last M82 or M83
+  std::string feed;
+  for (std::size_t i = count;
+       i-- > 0 && (positions == count || extrusion == count || feed.empty());) {
+    const std::string_view text = commands[i];
+    const std::string_view word = gcode_word(text);
+    if (positions == count && (word == "G90" || word == "G91")) positions = i;
+    if (extrusion == count && (word == "M82" || word == "M83")) extrusion = i;
+    const std::size_t at = text.find(" F");
+    const bool moves = word == "G0" || word == "G1" || word == "G2" || word == "G3";
+    if (feed.empty() && moves && at != std::string_view::npos)
+      feed = text.substr(at + 1, text.find(' ', at + 1) - at - 1);
+  }
+  std::vector<std::string> lines;
+  for (const std::size_t i : {std::min(positions, extrusion), std::max(positions, extrusion)})
+    if (i < count) lines.push_back(commands[i]);
+  if (!feed.empty()) lines.push_back("G1 " + feed);
+  return lines;
+}
+
 bool waits_for_user(std::string_view command) {
   const std::string_view word = gcode_word(command);
   if (word != "M0" && word != "M1") return false;
   const std::string_view rest = trim(command.substr(word.size()));
   const bool timed = rest.size() > 1 && (rest[0] == 'P' || rest[0] == 'S') && is_digit(rest[1]);
   return !timed;
-}
-
-GcodeReply read_gcode_reply(std::string_view line) {
-  const std::string_view text = trim(line);
-  GcodeReply reply;
-  reply.text = text;
-  if (is_ok(text)) {
-    read_ok(text, reply);
-  } else if (starts_with_any_case(text, "error") || text.starts_with("!!")) {
-    if (tells_heater_failure(text))
-      reply.kind = GcodeReplyKind::kThermal;
-    else if (tells_halt(text) || text.starts_with("!!"))
-      reply.kind = GcodeReplyKind::kHalted;
-  } else if (tells_reset(text)) {
-    reply.kind = GcodeReplyKind::kStart;
-  } else if (is_temperature(text)) {
-    reply.kind = GcodeReplyKind::kTemperature;
-  } else if (is_position(text)) {
-    reply.kind = GcodeReplyKind::kPosition;
-  } else {
-    read_by_prefix(text, reply);
-  }
-  return reply;
 }
 
 }  // namespace packmerger

@@ -29,22 +29,31 @@ std::string_view gcode_word(std::string_view command);
 
 bool is_heating(std::string_view command);  // blocks until a temperature is reached
 bool is_long(std::string_view command);     // may block long: homing, dwelling, waiting for moves
+bool blocks(std::string_view command);      // either of them
 bool waits_for_user(std::string_view command);  // M0 or M1 without a time
+
+// Commands that set again what the first `count` of `commands` have set last: absolute or relative
+// positions (G90, G91) and extrusion (M82, M83), in their order, and the feed rate.
+std::vector<std::string> gcode_modes(const std::vector<std::string>& commands, std::size_t count);
 
 enum class GcodeReplyKind {
   kOk,
-  kResend,       // number: the line asked for
-  kBusy,         // alive; `waiting` where the printer waits for its user
-  kIdle,         // "wait": alive and nothing queued
-  kStart,        // booted: whatever was printing is lost
-  kHalted,       // dead until it is reset
-  kThermal,      // a heater failed; the printer may still listen
-  kTemperature,  // a report that is no ok
-  kPosition,     // "X:… Y:… Z:…", what M114 answers
-  kPrompt,       // text: the question
-  kFirmware,     // the answer to M115
-  kCapability,   // text: "NAME:0" or "NAME:1"
-  kCard,         // the answer to M27; `waiting` where it prints from its card
+  kResend,        // number: the line asked for
+  kBusy,          // alive; `waiting` where the printer waits for its user
+  kIdle,          // "wait": alive and nothing queued
+  kStart,         // booted: whatever was printing is lost
+  kHalted,        // dead until it is reset
+  kThermal,       // a heater failed; the printer may still listen
+  kTemperature,   // a report that is no ok
+  kPosition,      // "X:… Y:… Z:…", what M114 answers
+  kPrompt,        // text: the question
+  kPromptButton,  // text: one of its answers
+  kPause,         // asks its host to pause; `waiting` where it stands still already
+  kResume,        // goes on after a pause
+  kCancel,        // the print was cancelled at its panel
+  kFirmware,      // the answer to M115
+  kCapability,    // text: "NAME:0" or "NAME:1"
+  kCard,          // the answer to M27; `waiting` where it prints from its card
   kOther
 };
 

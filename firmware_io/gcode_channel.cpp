@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "firmware_io/ascii.h"
 #include "firmware_io/conversation.h"
 
 namespace packmerger {
@@ -14,10 +15,6 @@ namespace {
 constexpr std::size_t kMaxReply = 4096;
 // After this much silence a printer has said what it had to say.
 constexpr double kQuiet_s = 0.05;
-
-void check_cancel(const PrintControl& control) {
-  if (control.cancelled()) throw Error(Fault::kInterrupted, "Cancelled before the print began", "");
-}
 
 [[noreturn]] void throw_halted(const GcodeReply& reply) {
   throw Error(Fault::kIo, "The printer has halted: " + reply.text,
@@ -32,7 +29,7 @@ void wait_for_boot(GcodeChannel& channel, double boot_wait_s, const PrintControl
   const double end = channel.now_s() + boot_wait_s;
   double quiet_at = end;
   while (channel.now_s() < std::min(std::max(end, quiet_at), end + kLongest_s)) {
-    check_cancel(control);
+    check_not_ended(control);
     const double left = std::max(std::max(end, quiet_at) - channel.now_s(), 0.0);
     if (channel.receive(std::min(kSlice_s, left))) quiet_at = channel.now_s() + kPause_s;
   }
@@ -42,6 +39,7 @@ struct Answer {
   bool ok = false;
   bool firmware = false;
   bool prints_from_card = false;
+  std::string machine;  // in its own words
   GcodeAbilities abilities;
 };
 
@@ -49,13 +47,16 @@ void note(const GcodeReply& reply, Answer& answer) {
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
       answer.ok = true;
+      if (reply.has_firmware) answer.machine = reply.text;
       answer.firmware = answer.firmware || reply.has_firmware;
       break;
     case GcodeReplyKind::kFirmware:
+      answer.machine = reply.text;
       answer.firmware = true;
       break;
     case GcodeReplyKind::kCapability:
       if (reply.text == "PROMPT_SUPPORT:1") answer.abilities.prompts = true;
+      if (reply.text == "AUTOREPORT_TEMP:1") answer.abilities.autoreport = true;
       break;
     case GcodeReplyKind::kCard:
       answer.prints_from_card = answer.prints_from_card || reply.waiting;
@@ -76,7 +77,7 @@ Answer ask(GcodeChannel& channel, std::string_view line, double wait_s, const Pr
   channel.send(line);
   double heard_at = channel.now_s();
   while (!done(answer) && channel.now_s() - heard_at < wait_s) {
-    check_cancel(control);
+    check_not_ended(control);
     if (const auto reply = channel.receive(std::min(kSlice_s, wait_s))) {
       heard_at = channel.now_s();
       note(*reply, answer);
@@ -89,6 +90,26 @@ void drain(GcodeChannel& channel) {
   const double end = channel.now_s() + 2;  // a printer may report temperatures without end
   while (channel.now_s() < end && channel.receive(kQuiet_s)) {
   }
+}
+
+// The value behind "KEY:" in M115's answer, which goes up to the next word in capitals with a
+// colon.
+std::string field(const std::string& answer, const std::string& key) {
+  const std::size_t at = answer.find(key + ":");
+  if (at == std::string::npos) return "unknown";
+  const std::size_t begin = at + key.size() + 1;
+  std::size_t end = begin;
+  while ((end = answer.find(' ', end)) != std::string::npos) {
+    const std::size_t word_end = answer.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_", ++end);
+    if (word_end != std::string::npos && word_end > end && answer[word_end] == ':') break;
+  }
+  const std::string value = answer.substr(begin, end == std::string::npos ? end : end - begin);
+  return std::string(ascii::trim(value));
+}
+
+// "Prusa-mini (Marlin 2.1.2)"
+std::string short_name(const std::string& answer) {
+  return field(answer, "MACHINE_TYPE") + " (" + field(answer, "FIRMWARE_NAME") + ")";
 }
 
 constexpr int kTries = 5;
@@ -162,6 +183,7 @@ GcodeAbilities connect_gcode(GcodeChannel& channel, const StreamOptions& options
   wait_for_boot(channel, options.boot_wait_s, control);
   const Answer who = identify(channel, options, control);
   drain(channel);
+  check_machine(channel.name(), short_name(who.machine), options.machine);
   const Answer card = ask(channel, "M27", options.timeout_s / kTries, control,
                           [](const Answer& a) { return a.ok; });
   if (card.prints_from_card)

@@ -32,11 +32,13 @@ class GcodeChannel {
 
 // What the answer to M115 says.
 struct GcodeAbilities {
-  bool prompts = false;  // asks its user through the host, answered by M876
+  bool prompts = false;     // asks its user through the host, answered by M876
+  bool autoreport = false;  // tells its temperatures of its own once it is asked to (M155)
 };
 
 // Waits until the board has booted, asks who it is and whether it prints from its card, and sets
-// its line count to 0. Throws Error{kUnavailable}, {kBusy}, {kIo} (halted) or {kInterrupted}.
+// its line count to 0. Throws Error{kUnavailable} (also for the wrong machine), {kBusy}, {kIo}
+// (halted) or {kInterrupted}.
 GcodeAbilities connect_gcode(GcodeChannel& channel, const StreamOptions& options,
                              const PrintControl& control);
 

@@ -66,6 +66,9 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
     if (stream.may_send()) send_safe_text(channel, options.safe_gcode);
     throw;
   }
+  if (stream.was_cancelled_at_printer())
+    throw Error(Fault::kIo, "The print was cancelled at the printer",
+                "Clear the bed and print the job again.");
   if (stream.was_cancelled()) throw Error(Fault::kInterrupted, "The print was cancelled", "");
   reporter.state(PrintState::kDone);
 }

@@ -15,6 +15,9 @@ constexpr int kTriesPerTimeout = 5;
 constexpr std::size_t kMaxPositionTries = 10;
 // A request for a line further back than this is noise, or the printer was reset.
 constexpr std::size_t kSlack = 10;
+// With a window: this many lines at once, and one at a time for so many after any trouble.
+constexpr std::size_t kMostLines = 3;
+constexpr std::size_t kCareful = 10;
 // The ok that belongs to a Resend follows at once; some firmwares send none.
 constexpr double kResendWait_s = 0.5;
 // Further answers on their way settle whether a request for a line is still true.
@@ -23,12 +26,6 @@ constexpr double kSettle_s = 0.05;
 constexpr double kBusyPatience_s = 6;
 // A command that blocks longer than usual without a word is given this many time-outs.
 constexpr double kLongFactor = 5;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (const GcodeCommand& command : gcode_commands(text)) lines.emplace_back(command.text);
-  return lines;
-}
 
 }  // namespace
 
@@ -44,12 +41,13 @@ GcodeStream::GcodeStream(GcodeChannel& channel, std::vector<std::string> command
 
 void GcodeStream::run() {
   std::size_t number = 1;
-  while (number <= commands_.size() + 1 || !position_seen_) {
+  while (!is_behind_program(number) || !position_seen_) {
     if (number > commands_.size() + 1 + kMaxPositionTries)
       fail("The printer does not say where it is (M114), so the end of the print is unproven",
            "Look at the print, and switch the printer off and on before the next job.");
-    number = exchange(number);
-    if (!cancelling_) reporter_.done(std::min(number - 1, commands_.size()));
+    const bool may_pause = number == highest_ + 1 && number <= commands_.size();
+    number = paused_ && may_pause && !cancelling_ ? pause(number) : exchange(number);
+    tell_done(number);
   }
 }
 
@@ -58,53 +56,87 @@ std::string GcodeStream::command(std::size_t number) const {
   return number == commands_.size() + 1 ? "M400" : "M114";
 }
 
-// Sends one line until the printer has answered it; returns the number of the line to send next.
+std::size_t GcodeStream::program_lines_before(std::size_t number) const {
+  std::size_t lines = std::min(number - 1, commands_.size());
+  for (const Insertion& insertion : inserted_)
+    if (insertion.first < number) lines -= std::min(insertion.count, number - insertion.first);
+  return lines;
+}
+
+void GcodeStream::tell_done(std::size_t next) {
+  if (!cancelling_) reporter_.done(program_lines_before(next));
+}
+
+// Gives a line, and others behind it, until the printer has answered all of them; returns the
+// number of the line to give next.
 std::size_t GcodeStream::exchange(std::size_t number) {
-  std::string line = numbered_gcode(number, command(number));
-  line.pop_back();
-  channel_.send(line);
-  sent_at_s_ = alive_at_s_ = attempt_at_s_ = channel_.now_s();
-  owed_oks_ = 1;
   resend_.reset();
-  recovering_ = taken_for_granted_ = false;
+  m105_behind_ = taken_for_granted_ = false;
   attempts_ = 0;
-  show_state(number);
-  while (true) {
-    if (owed_oks_ == 0 && !resend_) break;
+  give(number);
+  while (!unanswered_.empty() || resend_) {
     if (resend_ && channel_.now_s() >= resend_->due_s) {
-      owed_oks_ = 0;
+      unanswered_.clear();
+      careful_until_ = last_ + kCareful;
       return resend_->number;
     }
-    obey_requests(number);
+    obey_requests();
+    if (may_give_another()) give(last_ + 1);
     if (const auto reply = channel_.receive(resend_ ? kSettle_s : kSlice_s))
-      handle(*reply, number);
+      handle(*reply);
     else
-      watch_silence(number);
+      watch_silence();
   }
+  if (taken_for_granted_) careful_until_ = last_ + kCareful;
   unproven_ = taken_for_granted_ ? unproven_ + 1 : 0;
   if (unproven_ > kMaxUnproven)
     fail("The printer no longer acknowledges what it is sent",
          "Check the cable, switch the printer off and on, then print the job again.");
   if (!taken_for_granted_) far_back_ = 0;
-  prompt_.clear();
-  return number + 1;
+  return last_ + 1;
 }
 
-void GcodeStream::handle(const GcodeReply& reply, std::size_t number) {
+// Within the window, and never behind a command that blocks or any trouble. Marlin queues four
+// lines and reads no further: so few are given that a cancel is read at once.
+bool GcodeStream::may_give_another() const {
+  const std::size_t next = last_ + 1;
+  const bool calm = !resend_ && !m105_behind_ && !cancelling_ && !paused_ && !between_;
+  if (options_.window_bytes == 0 || !calm || next < careful_until_ || next > commands_.size() ||
+      unanswered_.size() >= kMostLines || blocks(command(last_)) || blocks(command(next)))
+    return false;
+  std::size_t bytes = numbered_gcode(next, command(next)).size();
+  for (const Given& given : unanswered_) bytes += given.bytes;
+  return bytes <= options_.window_bytes;
+}
+
+void GcodeStream::give(std::size_t number) {
+  std::string line = numbered_gcode(number, command(number));
+  unanswered_.push_back({number, line.size()});
+  line.pop_back();
+  channel_.send(line);
+  last_ = number;
+  highest_ = std::max(highest_, number);
+  alive_at_s_ = attempt_at_s_ = channel_.now_s();
+  prompt_.clear();
+  choices_.clear();
+  show_state();
+}
+
+void GcodeStream::handle(const GcodeReply& reply) {
+  const bool heating = is_heating(command(last_));
   // A temperature report may come on its own for ever: it proves nothing unless we wait for heat.
-  if (reply.kind != GcodeReplyKind::kTemperature || is_heating(command(number)))
-    alive_at_s_ = channel_.now_s();
+  if (reply.kind != GcodeReplyKind::kTemperature || heating) alive_at_s_ = channel_.now_s();
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
-      if (reply.has_position && number > commands_.size() + 1) position_seen_ = true;
+      if (reply.has_position && is_behind_program(last_)) position_seen_ = true;
       handle_ok(reply);
       break;
     case GcodeReplyKind::kResend:
-      handle_resend(reply.number, number);
+      handle_resend(reply.number);
       break;
     case GcodeReplyKind::kBusy:
       busy_seen_ = true;
-      if (reply.waiting && !cancelling_) reporter_.state(PrintState::kWaiting, prompt_);
+      if (reply.waiting && !cancelling_) reporter_.state(PrintState::kWaiting, prompt_, choices_);
       break;
     case GcodeReplyKind::kIdle:
       if (channel_.now_s() - attempt_at_s_ > 1) recover();
@@ -121,51 +153,53 @@ void GcodeStream::handle(const GcodeReply& reply, std::size_t number) {
       handle_failed_heater(reply);
       break;
     case GcodeReplyKind::kTemperature:
-      if (is_heating(command(number)) && !cancelling_)
-        reporter_.state(PrintState::kHeating, reply.text);
+      if (heating && !cancelling_ && !between_) reporter_.state(PrintState::kHeating, reply.text);
       break;
     case GcodeReplyKind::kPosition:
-      if (number > commands_.size() + 1) position_seen_ = true;
-      break;
-    case GcodeReplyKind::kPrompt:
-      prompt_ = reply.text;
-      if (!cancelling_) reporter_.state(PrintState::kWaiting, prompt_);
+      if (is_behind_program(last_)) position_seen_ = true;
       break;
     default:
+      if (!cancelling_) handle_action(reply);
       break;
   }
 }
 
 void GcodeStream::handle_ok(const GcodeReply& reply) {
-  if (owed_oks_ > 0) {
-    --owed_oks_;
-    if (resend_) resend_->due_s = channel_.now_s() + kSettle_s;
+  if (!unanswered_.empty()) {
+    const std::size_t number = unanswered_.front().number;
+    unanswered_.pop_front();
+    if (resend_)
+      resend_->due_s = channel_.now_s() + kSettle_s;
+    else if (number > 0)
+      tell_done(number + 1);
   } else if (resend_) {
     // The request was stale, for instance the answer to a doubled line: the line itself was taken.
     resend_.reset();
   }
-  if (recovering_ && reply.has_temperature) {
+  if (m105_behind_ && reply.has_temperature) {
     // Answers come in order, so whatever was still owed got lost.
-    taken_for_granted_ = owed_oks_ > 0 && !resend_;
-    owed_oks_ = 0;
+    taken_for_granted_ = !unanswered_.empty() && !resend_;
+    unanswered_.clear();
+    m105_behind_ = false;
   }
 }
 
-void GcodeStream::handle_resend(std::size_t asked, std::size_t number) {
+void GcodeStream::handle_resend(std::size_t asked) {
   std::size_t next = asked;
-  if (asked == 0 || asked > number + 1) next = number;  // garbled on its way
-  if (asked > 0 && asked + kSlack < number) {
+  if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
+  if (asked > 0 && asked + kSlack < last_) {
     if (asked == far_back_) {
       may_send_ = false;
       fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
-               " after line " + std::to_string(number) +
+               " after line " + std::to_string(last_) +
                "): it was reset in the middle of the print",
            "Clear the bed and print the job again; check the printer's power supply.");
     }
     far_back_ = asked;
-    next = number;
+    next = last_;
   }
-  asked_times_ = next == asked_ ? asked_times_ + 1 : 1;
+  // Every line that was on its way behind the one it lacks asks for that one again.
+  if (!resend_ || next != asked_) asked_times_ = next == asked_ ? asked_times_ + 1 : 1;
   asked_ = next;
   if (asked_times_ >= kMaxSameResend)
     fail(
@@ -188,40 +222,20 @@ void GcodeStream::handle_failed_heater(const GcodeReply& reply) {
       "Switch the printer off, check its heater and temperature sensor, then print the job again.");
 }
 
-void GcodeStream::obey_requests(std::size_t number) {
-  if (control_.cancelled() && !cancelling_) begin_cancel(number);
-  const int answer = control_.take_answer();
-  if (answer < 0 || cancelling_) return;
-  send_raw(abilities_.prompts ? "M876 S" + std::to_string(answer) : std::string("M108"));
-}
-
-// M108 ends a wait for heat or for the user, M410 drops the planned moves. Both are obeyed at once
-// only when they are not numbered. The program is then replaced by the safe text; what the printer
-// may still ask for again becomes M105, which does nothing.
-void GcodeStream::begin_cancel(std::size_t number) {
-  cancelling_ = true;
-  reporter_.state(PrintState::kCancelling);
-  send_raw("M108");
-  send_raw("M410");
-  const std::size_t first = std::min(number > kSlack ? number - kSlack : 1, commands_.size() + 1);
-  commands_.resize(number);
-  for (std::size_t i = first; i <= number; ++i) commands_[i - 1] = "M105";
-  for (std::string& line : lines_of(options_.safe_gcode)) commands_.push_back(std::move(line));
-  position_seen_ = false;
-}
-
 void GcodeStream::send_raw(std::string_view line) {
   channel_.send(line);
-  ++owed_oks_;
+  unanswered_.push_back({0, line.size() + 1});
 }
 
-void GcodeStream::watch_silence(std::size_t number) {
-  const std::string text = command(number);
+void GcodeStream::watch_silence() {
+  const double now = channel_.now_s();
+  const bool stands_still = paused_ && !parks_ && !between_;
+  if (stands_still) alive_at_s_ = now;  // for as long as the machine likes
+  const std::string text = command(last_);
   const double limit =
       options_.timeout_s * (is_long(text) && !busy_seen_ && !cancelling_ ? kLongFactor : 1.0);
-  const double now = channel_.now_s();
   if (now - alive_at_s_ >= limit || attempts_ >= kMaxAttempts)
-    fail("The printer has not answered line " + std::to_string(number) + " (" + text + ")",
+    fail("The printer has not answered line " + std::to_string(last_) + " (" + text + ")",
          "Check the cable, switch the printer off and on, then print the job again.");
   double patience = limit / kTriesPerTimeout;
   if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
@@ -234,15 +248,15 @@ void GcodeStream::watch_silence(std::size_t number) {
 void GcodeStream::recover() {
   channel_.send("");
   send_raw("M105");
-  recovering_ = true;
+  m105_behind_ = true;
   ++attempts_;
   attempt_at_s_ = channel_.now_s();
 }
 
-void GcodeStream::show_state(std::size_t number) {
-  if (cancelling_) return;
-  const bool heating = is_heating(command(number));
-  const PrintState state = heating ? PrintState::kHeating : PrintState::kPrinting;
+void GcodeStream::show_state() {
+  if (cancelling_ || between_) return;
+  const PrintState state =
+      is_heating(command(last_)) ? PrintState::kHeating : PrintState::kPrinting;
   if (reporter_.current() != state) reporter_.state(state);
 }
 

@@ -1,7 +1,8 @@
-// One print's numbered lines, each sent once the one before is acknowledged.
+// One print's numbered lines, and what the printer and its people make of them.
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,29 +29,54 @@ class GcodeStream {
   void run();
 
   bool was_cancelled() const { return cancelling_; }
-  // False once the printer halted or was reset: nothing may be sent to it any more.
+  bool was_cancelled_at_printer() const { return cancelled_at_printer_; }
+  // False once the printer halted, was reset or stopped at once: nothing may be sent to it any
+  // more.
   bool may_send() const { return may_send_; }
 
  private:
+  // A line that was sent and not answered. number 0: one without a number.
+  struct Given {
+    std::size_t number = 0;
+    std::size_t bytes = 0;
+  };
   // A line that the printer asked for, and when to give it even if no further ok comes.
   struct Resend {
     std::size_t number = 0;
     double due_s = 0;
   };
+  // Lines that are none of the program's.
+  struct Insertion {
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
 
+  // gcode_stream.cpp: lines and answers
   std::string command(std::size_t number) const;
+  bool is_behind_program(std::size_t number) const { return number > commands_.size() + 1; }
+  std::size_t program_lines_before(std::size_t number) const;
+  void tell_done(std::size_t next);
   std::size_t exchange(std::size_t number);
-  void handle(const GcodeReply& reply, std::size_t number);
+  void give(std::size_t number);
+  bool may_give_another() const;
+  void handle(const GcodeReply& reply);
   void handle_ok(const GcodeReply& reply);
-  void handle_resend(std::size_t asked, std::size_t number);
+  void handle_resend(std::size_t asked);
   void handle_failed_heater(const GcodeReply& reply);
-  void obey_requests(std::size_t number);
-  void begin_cancel(std::size_t number);
-  void watch_silence(std::size_t number);
+  void watch_silence();
   void recover();
   void send_raw(std::string_view line);
-  void show_state(std::size_t number);
+  void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
+
+  // gcode_requests.cpp: what people and the machine ask for
+  void obey_requests();
+  [[noreturn]] void stop_at_once();
+  void begin_cancel();
+  void handle_action(const GcodeReply& reply);
+  std::size_t pause(std::size_t number);
+  void stand_still();
+  std::size_t execute_between(std::size_t number, const std::vector<std::string>& lines);
 
   GcodeChannel& channel_;
   std::vector<std::string> commands_;
@@ -60,26 +86,38 @@ class GcodeStream {
   PrintControl& control_;
 
   bool cancelling_ = false;
+  bool cancelled_at_printer_ = false;
   bool may_send_ = true;
-  bool position_seen_ = false;  // by an M114 behind the program
-  bool busy_seen_ = false;      // the printer says when it is busy
-  std::string prompt_;          // what the printer asks its user
+  bool position_seen_ = false;        // by an M114 behind the program
+  bool busy_seen_ = false;            // the printer says when it is busy
+  std::string prompt_;                // what the printer asks its user,
+  std::vector<std::string> choices_;  // and the answers it offers
+  std::vector<Insertion> inserted_;
 
-  // of the line that is being exchanged
-  int owed_oks_ = 0;
+  bool paused_ = false;   // wanted; begins between two lines
+  bool parks_ = false;    // the pause text is executed
+  bool between_ = false;  // in the lines around a pause
+
+  // of the lines that are being exchanged
+  std::size_t last_ = 0;  // the one given last
+  std::deque<Given> unanswered_;
   std::optional<Resend> resend_;
-  bool recovering_ = false;         // an M105 was sent behind it
+  bool m105_behind_ = false;        // an M105 was sent behind them
   bool taken_for_granted_ = false;  // only that M105 was answered
   int attempts_ = 0;
-  double sent_at_s_ = 0;
   double alive_at_s_ = 0;
   double attempt_at_s_ = 0;
 
-  // over several lines
-  int unproven_ = 0;          // lines in a row that were taken for granted
-  std::size_t asked_ = 0;     // the line last asked for,
-  int asked_times_ = 0;       // and how often
-  std::size_t far_back_ = 0;  // a request too far back to be true
+  // over several exchanges
+  std::size_t highest_ = 0;        // of all lines ever given
+  std::size_t careful_until_ = 0;  // the line from which the window may be used again
+  int unproven_ = 0;               // exchanges in a row that were taken for granted
+  std::size_t asked_ = 0;          // the line last asked for,
+  int asked_times_ = 0;            // and how often
+  std::size_t far_back_ = 0;       // a request too far back to be true
 };
+
+// The commands of a text of the profile.
+std::vector<std::string> gcode_lines(const std::string& text);
 
 }  // namespace packmerger

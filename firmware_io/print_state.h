@@ -1,11 +1,13 @@
-// What a print in progress tells, and how it is told to stop.
+// What a print in progress tells, and how it is told to pause and to stop.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace packmerger {
 
@@ -21,6 +23,7 @@ struct PrintReport {
   std::size_t done = 0;
   std::size_t total = 0;
   std::string text;
+  std::vector<std::string> choices;  // of kWaiting: the buttons, for answer(); may be empty
 };
 
 // Called on the thread that prints: at every change of state and otherwise at most ten times a
@@ -28,10 +31,14 @@ struct PrintReport {
 using PrintListener = std::function<void(const PrintReport&)>;
 
 struct StreamOptions {
-  double timeout_s = 30;   // silence after which the printer counts as gone
-  double boot_wait_s = 2;  // after opening, for boards that reset
-  std::string build_name;  // shown by the printer where the program names no build; may be cut
-  std::string safe_gcode;  // G-code: sent after a failure or a cancel; heaters off
+  double timeout_s = 30;     // silence after which the printer counts as gone
+  double boot_wait_s = 2;    // after opening, for boards that reset
+  std::string build_name;    // shown by the printer where the program names no build; may be cut
+  std::string safe_gcode;    // G-code: sent after a failure or a cancel; heaters off
+  std::string pause_gcode;   // G-code: executed once a print stands paused
+  std::string resume_gcode;  // G-code: executed before it goes on
+  std::string machine;       // must be in what the machine says of itself; empty: any machine
+  std::size_t window_bytes = 0;  // G-code: unacknowledged bytes at most; 0: one line at a time
 };
 
 // Requests to a running print. Every member may be called from any thread.
@@ -45,6 +52,22 @@ class PrintControl {
   void cancel() { cancelled_ = true; }
   bool cancelled() const { return cancelled_ || (interrupted_ != nullptr && *interrupted_); }
 
+  // The machine stops where it stands and must be looked at: G-code's M112, s3g's abort. The print
+  // fails, and nothing is sent after it.
+  void stop_at_once() { stopped_ = true; }
+  bool stopped() const { return stopped_; }
+
+  // The print stands still at the end of a command, its heaters on, until it is resumed or
+  // cancelled; state kPaused says when. Resuming also ends a pause that the machine began.
+  void pause() { pause_request_ = 1; }
+  void resume() { pause_request_ = 0; }
+  // For links: what was asked since the last call; true: pause.
+  std::optional<bool> take_pause_request() {
+    const int request = pause_request_.exchange(-1);
+    if (request < 0) return std::nullopt;
+    return request == 1;
+  }
+
   // Answers a printer in state kWaiting: the index of the chosen button, 0 to go on.
   void answer(int choice) { answer_ = choice; }
   // For links: the answer given since the last call, or -1.
@@ -52,6 +75,8 @@ class PrintControl {
 
  private:
   std::atomic<bool> cancelled_{false};
+  std::atomic<bool> stopped_{false};
+  std::atomic<int> pause_request_{-1};
   std::atomic<int> answer_{-1};
   const std::atomic<bool>* interrupted_ = nullptr;
 };

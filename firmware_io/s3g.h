@@ -21,10 +21,12 @@ enum Query : std::uint8_t {
   kInit = 0x01,
   kFreeBuffer = 0x02,
   kAbort = 0x07,
+  kPause = 0x08,  // and go on: it toggles
   kToolQuery = 0x0A,
   kIsFinished = 0x0B,
   kBoardStatus = 0x17,
-  kBuildStatistics = 0x18
+  kBuildStatistics = 0x18,
+  kAdvancedVersion = 0x1B
 };
 
 // Actions that a link must know by name; all are buffered and executed in order.

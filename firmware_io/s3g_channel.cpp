@@ -114,6 +114,30 @@ std::string Channel::query(std::string_view payload, std::size_t reply_size) {
               "Check the cable, switch the printer off and on, then print the job again.");
 }
 
+void Channel::try_query(Query code) {
+  std::string reply;
+  const Expected expected = [](const Reply& candidate) { return candidate.payload.size() == 1; };
+  if (exchange(std::string(1, code), expected, reply) != Outcome::kReply) resynchronize();
+}
+
+// Old firmware does not know the advanced version; then only the number is told.
+std::string Channel::firmware_name(std::uint32_t version) {
+  const std::string number = std::to_string(version / 100) + "." + std::to_string(version % 100);
+  std::string reply;
+  const Expected expected = [](const Reply& candidate) {
+    return candidate.payload.size() == 9 || candidate.code() == kUnknownQuery;
+  };
+  for (int i = 0; i < kTries; ++i) {
+    if (exchange(std::string(1, kAdvancedVersion), expected, reply) == Outcome::kReply) break;
+    resynchronize();
+    reply.clear();
+  }
+  if (reply.size() != 9) return "firmware " + number;
+  const auto variant = static_cast<std::uint8_t>(reply[5]);
+  if (variant == 0x80) return "Sailfish " + number;
+  return (variant == 0x01 ? "MakerBot " : "variant " + hex(variant) + " ") + number;
+}
+
 std::uint32_t Channel::free_buffer() { return read_integer(query(std::string(1, kFreeBuffer), 4)); }
 
 bool Channel::is_finished() { return query(std::string(1, kIsFinished), 1)[0] != 0; }

@@ -33,6 +33,11 @@ class Channel {
   // when nothing intact comes or the printer answers that its build is over.
   std::string query(std::string_view payload, std::size_t reply_size);
 
+  // A query without result, sent once only; its answer, if any, is not looked at.
+  void try_query(Query code);
+
+  // "Sailfish 7.8", "MakerBot 7.5"; version: as the version query gave it.
+  std::string firmware_name(std::uint32_t version);
   std::uint32_t free_buffer();
   bool is_finished();
   std::uint8_t board_status();

@@ -41,7 +41,7 @@ void print_x3g(Port& port, std::string_view program, const StreamOptions& option
   Reporter reporter(port, listener, program.size());
   s3g::Channel channel(port, options.timeout_s);
   s3g::Print print(channel, reporter, control);
-  print.connect(options.boot_wait_s);
+  print.connect(options.boot_wait_s, options.machine);
   try {
     print.run(actions, counted);
   } catch (...) {

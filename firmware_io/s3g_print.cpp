@@ -1,6 +1,7 @@
 #include "firmware_io/s3g_print.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 
@@ -43,14 +44,12 @@ double next_wait(double& wait_s, double longest_s) {
 Print::Print(Channel& channel, Reporter& reporter, PrintControl& control)
     : channel_(channel), reporter_(reporter), control_(control) {}
 
-void Print::connect(double boot_wait_s) {
-  const auto check_cancel = [&] {
-    if (control_.cancelled())
-      throw Error(Fault::kInterrupted, "Cancelled before the print began", "");
-  };
-  for (const double end = channel_.now_s() + boot_wait_s; channel_.now_s() < end; check_cancel())
+void Print::connect(double boot_wait_s, const std::string& machine) {
+  const double end = channel_.now_s() + boot_wait_s;
+  while (channel_.now_s() < end) {
     channel_.pause(std::min(kSlice_s, end - channel_.now_s()));
-  check_cancel();
+    check_not_ended(control_);
+  }
   channel_.resynchronize();
   // A build cancelled earlier is told to the first who asks.
   channel_.tolerate_cancelled(true);
@@ -66,6 +65,7 @@ void Print::connect(double boot_wait_s) {
         Fault::kUnavailable, "Nothing that speaks s3g answers at " + channel_.name(),
         "Check that the printer is on, and that the profile's dialect and link.baud fit it.");
   channel_.query(std::string(1, kInit), 0);
+  check_machine(channel_.name(), channel_.firmware_name(version), machine);
   const bool busy =
       is_building(channel_.statistics().state) || (channel_.board_status() & kStatusBusyAlone) != 0;
   if (busy)
@@ -174,7 +174,8 @@ void Print::finish() {
     const Statistics statistics = channel_.statistics();
     judge(statistics);
     if (idle && statistics.state == BuildState::kFinished) break;
-    if (!idle) busy_at = channel_.now_s();
+    const bool paused = statistics.state == BuildState::kPaused;
+    if (!idle || paused) busy_at = channel_.now_s();
     if (channel_.now_s() - busy_at > kPatience_s)
       fail("The printer has stopped without finishing its build", kPrintAgain);
     obey();
@@ -186,7 +187,32 @@ void Print::finish() {
 
 void Print::obey() {
   control_.take_answer();  // a Replicator is answered at its own panel
+  if (control_.stopped()) stop_at_once();
   if (control_.cancelled()) cancel();
+  if (const auto wanted = control_.take_pause_request()) pause_wanted_ = wanted;
+  if (pause_wanted_ && seen_running_) set_paused(*std::exchange(pause_wanted_, std::nullopt));
+}
+
+void Print::stop_at_once() {
+  may_abort_ = false;  // it is done here
+  channel_.tolerate_cancelled(true);
+  channel_.query(std::string(1, kAbort), 0);
+  throw_stopped();
+}
+
+// The query toggles, so the build state is read before each try, and what is wanted may already be
+// so: a pause at the printer's panel is one too.
+void Print::set_paused(bool wanted) {
+  constexpr int kMostTries = 5;
+  constexpr double kSettle_s = 0.2;
+  for (int i = 0; i < kMostTries; ++i) {
+    const BuildState state = channel_.statistics().state;
+    const bool can = state == BuildState::kRunning || state == BuildState::kPaused;
+    if (!can || (state == BuildState::kPaused) == wanted) break;
+    channel_.try_query(kPause);
+    channel_.pause(kSettle_s);
+  }
+  watch();
 }
 
 void Print::cancel() {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +19,10 @@ class Print {
  public:
   Print(Channel& channel, Reporter& reporter, PrintControl& control);
 
-  // Waits for the board and makes sure that it speaks s3g and is not building. Throws
+  // Waits for the board and makes sure that it speaks s3g, is the machine (check_machine()) and is
+  // not building. Throws
   // Error{kUnavailable}, {kBusy} or {kInterrupted}; the printer was not touched then.
-  void connect(double boot_wait_s);
+  void connect(double boot_wait_s, const std::string& machine);
 
   // Streams the actions, build start and build end among them, and returns when the printer says
   // that its build is finished. counted[i]: bytes of the program done with action i. Throws
@@ -40,6 +42,8 @@ class Print {
   void finish();
   void obey();
   void cancel();
+  [[noreturn]] void stop_at_once();
+  void set_paused(bool wanted);
   void watch();
   void judge(const Statistics& statistics);
   void show(const Statistics& statistics, std::uint8_t board_status);
@@ -56,6 +60,7 @@ class Print {
   bool started_ = false;           // a build start was accepted
   bool ended_ = false;             // a build end was accepted
   bool seen_running_ = false;
+  std::optional<bool> pause_wanted_;  // asked for, until the build has begun
   bool may_abort_ = true;
   double watched_at_s_ = 0;
 };

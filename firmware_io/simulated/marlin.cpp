@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <optional>
 
 namespace packmerger::simulated {
 
@@ -17,7 +14,6 @@ constexpr std::size_t kReceiveRing = 128;
 constexpr std::size_t kPlanner = 16;
 constexpr double kBusy_s = 2;
 constexpr double kReport_s = 1;
-constexpr double kHoming_s = 5;
 
 std::string without_comment(std::string line) {
   line.erase(std::min(line.find(';'), line.size()));
@@ -28,21 +24,13 @@ std::string without_comment(std::string line) {
   return line.substr(start);
 }
 
-// The value of a parameter: of 'X' in "G1 X10 Y2", 10.
-std::optional<double> value(const std::string& command, char letter) {
-  for (std::size_t i = 1; i + 1 < command.size(); ++i)
-    if (command[i] == letter && command[i - 1] == ' ')
-      return std::strtod(command.c_str() + i + 1, nullptr);
-  return std::nullopt;
-}
+}  // namespace
 
 bool is(const std::string& command, const std::string& word) {
   if (command.compare(0, word.size(), word) != 0) return false;
   return command.size() == word.size() ||
          std::isdigit(static_cast<unsigned char>(command[word.size()])) == 0;
 }
-
-}  // namespace
 
 void Marlin::receive(std::string_view bytes, double now_s) {
   for (char c : bytes) {
@@ -53,6 +41,7 @@ void Marlin::receive(std::string_view bytes, double now_s) {
 }
 
 void Marlin::advance(double now_s) {
+  report_by_itself(now_s);
   while (!dead_) {
     while (!planned_ends_s_.empty() && planned_ends_s_.front() <= now_s)
       planned_ends_s_.pop_front();
@@ -71,8 +60,9 @@ void Marlin::advance(double now_s) {
 }
 
 double Marlin::next_event_s() const {
-  if (dead_ || !executing_) return kNever;
-  double next = next_busy_s_;
+  if (dead_) return kNever;
+  if (!executing_) return next_auto_s_;
+  double next = std::min(next_busy_s_, next_auto_s_);
   if (blocked_ == Blocked::kUntil || blocked_ == Blocked::kTool || blocked_ == Blocked::kBed)
     next = std::min(next, blocked_until_s_);
   if (blocked_ == Blocked::kTool || blocked_ == Blocked::kBed)
@@ -82,7 +72,7 @@ double Marlin::next_event_s() const {
 }
 
 void Marlin::read_lines(double now_s) {
-  while (!dead_ && queue_.size() < kQueue) {
+  while (!dead_ && queue_.size() + (executing_ ? 1 : 0) < kQueue) {
     const std::size_t end = received_.find_first_of("\r\n");
     if (end == std::string::npos) return;
     std::string line = received_.substr(0, end);
@@ -161,6 +151,8 @@ void Marlin::fail_heater() {
   kill("kill() called!");
 }
 
+void Marlin::tell_host(const std::string& action) { say("//action:" + action); }
+
 void Marlin::reset() {
   const Pace pace = pace_;
   const MarlinTraits traits = traits_;
@@ -209,119 +201,18 @@ void Marlin::keep_alive(double now_s) {
   }
 }
 
+void Marlin::report_by_itself(double now_s) {
+  if (dead_ || now_s < next_auto_s_) return;
+  say(temperatures(now_s));
+  next_auto_s_ = now_s + pace_.line_s(report_every_s_);
+}
+
 void Marlin::finish() {
   say(reply_);
   reply_ = "ok";
   executing_ = false;
   skip_wait_ = false;
   blocked_ = Blocked::kNo;
-}
-
-std::string Marlin::temperatures(double now_s) const {
-  char text[96];
-  std::snprintf(text, sizeof text, " T:%.2f /%.2f B:%.2f /%.2f @:0 B@:0",
-                tool_.temperature(now_s, pace_), tool_.target(), bed_.temperature(now_s, pace_),
-                bed_.target());
-  return text;
-}
-
-void Marlin::plan(double seconds, double now_s) {
-  const double start = planned_ends_s_.empty() ? now_s : planned_ends_s_.back();
-  planned_ends_s_.push_back(start + pace_.machine_s(seconds));
-}
-
-void Marlin::execute(const std::string& command, double now_s) {
-  executed_.push_back(command);
-  block(Blocked::kNo, now_s);
-  if (execute_move(command, now_s)) return;
-  if (is(command, "M104") || is(command, "M109"))
-    tool_.set_target(value(command, 'S').value_or(value(command, 'R').value_or(0)), now_s);
-  if (is(command, "M140") || is(command, "M190"))
-    bed_.set_target(value(command, 'S').value_or(value(command, 'R').value_or(0)), now_s);
-  if (is(command, "M109")) block(Blocked::kTool, now_s, tool_.ready_s(now_s, pace_));
-  if (is(command, "M190")) block(Blocked::kBed, now_s, bed_.ready_s(now_s, pace_));
-  if (is(command, "M0") || is(command, "M1")) execute_pause(command, now_s);
-  execute_report(command, now_s);
-}
-
-// Everything that moves or waits for moves. False for another command.
-bool Marlin::execute_move(const std::string& command, double now_s) {
-  if (is(command, "G90")) relative_ = relative_e_ = false;
-  if (is(command, "G91")) relative_ = relative_e_ = true;
-  if (is(command, "M82")) relative_e_ = false;
-  if (is(command, "M83")) relative_e_ = true;
-  const bool sets = is(command, "G92");
-  const bool moves = is(command, "G0") || is(command, "G1");
-  if (sets || moves) {
-    double squared_mm = 0;
-    double extruded_mm = 0;
-    constexpr std::array<char, 4> kAxes = {'X', 'Y', 'Z', 'E'};
-    for (std::size_t i = 0; i < kAxes.size(); ++i) {
-      const auto to = value(command, kAxes[i]);
-      if (!to) continue;
-      const bool relative = moves && (i < 3 ? relative_ : relative_e_);
-      const double target = relative ? position_[i] + *to : *to;
-      (i < 3 ? squared_mm : extruded_mm) +=
-          i < 3 ? std::pow(target - position_[i], 2) : std::abs(target - position_[i]);
-      position_[i] = target;
-    }
-    if (!moves) return true;
-    if (const auto feed = value(command, 'F'); feed && *feed > 0) feed_mm_s_ = *feed / 60;
-    const double way_mm = squared_mm > 0 ? std::sqrt(squared_mm) : extruded_mm;
-    if (way_mm > 0) plan(way_mm / feed_mm_s_, now_s);
-    block(Blocked::kPlannerFull, now_s);
-    return true;
-  }
-  if (is(command, "G28")) {
-    position_[0] = position_[1] = position_[2] = 0;
-    block(Blocked::kUntil, now_s, now_s + pace_.machine_s(kHoming_s));
-    return true;
-  }
-  if (is(command, "G4")) {
-    const double seconds = value(command, 'S').value_or(value(command, 'P').value_or(0) / 1000);
-    block(Blocked::kUntil, now_s, now_s + pace_.machine_s(seconds));
-    return true;
-  }
-  if (is(command, "M400")) {
-    block(Blocked::kPlannerEmpty, now_s);
-    return true;
-  }
-  return false;
-}
-
-void Marlin::execute_report(const std::string& command, double now_s) {
-  if (is(command, "M105")) reply_ = "ok" + temperatures(now_s);
-  if (is(command, "M27")) say("Not SD printing");
-  if (is(command, "M114")) {
-    char text[128];
-    std::snprintf(text, sizeof text, "X:%.2f Y:%.2f Z:%.2f E:%.2f Count X:0 Y:0 Z:0", position_[0],
-                  position_[1], position_[2], position_[3]);
-    say(text);
-  }
-  if (is(command, "M115")) {
-    say(std::string("FIRMWARE_NAME:Marlin ") + (traits_.version_1_1 ? "1.1.9" : "2.1.2") +
-        " (simulated) PROTOCOL_VERSION:1.0 MACHINE_TYPE:PackMerger EXTRUDER_COUNT:1");
-    say("Cap:AUTOREPORT_TEMP:0");
-    say(std::string("Cap:PROMPT_SUPPORT:") + (traits_.prompts ? "1" : "0"));
-    say("Cap:EMERGENCY_PARSER:0");
-  }
-  const char letter = command.empty() ? '?' : command[0];
-  if (letter != 'G' && letter != 'M' && letter != 'T')
-    say("echo:Unknown command: \"" + command + "\"");
-}
-
-void Marlin::execute_pause(const std::string& command, double now_s) {
-  if (const auto seconds = value(command, 'S'))
-    return block(Blocked::kUntil, now_s, now_s + pace_.machine_s(*seconds));
-  const std::string text = command.size() > 3 ? command.substr(3) : "Click to resume";
-  say("echo:" + text + "\r");
-  if (traits_.prompts) {
-    say("//action:prompt_end");
-    say("//action:prompt_begin " + text);
-    say("//action:prompt_button Continue");
-    say("//action:prompt_show");
-  }
-  block(Blocked::kUser, now_s);
 }
 
 }  // namespace packmerger::simulated

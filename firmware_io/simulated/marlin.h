@@ -14,8 +14,12 @@ namespace packmerger::simulated {
 struct MarlinTraits {
   bool version_1_1 = false;  // a doubled line is answered with Resend; 2.1 says nothing
   bool prompts = true;       // asks its user through the host
+  bool autoreport = true;    // temperatures of its own (M155)
   bool rx_overflow = false;  // what does not fit the 128 bytes of its receive ring is lost
 };
+
+// Whether a command's first word is `word`: "G1 X2" is "G1", "G10" is not.
+bool is(const std::string& command, const std::string& word);
 
 class Marlin : public Firmware {
  public:
@@ -28,6 +32,7 @@ class Marlin : public Firmware {
   // What the machine may do in the middle of a print.
   void reset();
   void fail_heater();
+  void tell_host(const std::string& action);  // "pause", "resume", "cancel": pressed at its panel
 
  private:
   enum class Blocked { kNo, kUntil, kPlannerFull, kPlannerEmpty, kTool, kBed, kUser };
@@ -42,6 +47,7 @@ class Marlin : public Firmware {
   void execute(const std::string& command, double now_s);
   bool execute_move(const std::string& command, double now_s);
   void execute_report(const std::string& command, double now_s);
+  void report_by_itself(double now_s);
   void execute_pause(const std::string& command, double now_s);
   void block(Blocked why, double now_s, double until_s = kNever);
   bool still_blocked(double now_s);
@@ -67,7 +73,9 @@ class Marlin : public Firmware {
   double blocked_until_s_ = 0;
   double next_busy_s_ = 0;
   double next_report_s_ = 0;
-  bool skip_wait_ = false;  // M108 came
+  bool skip_wait_ = false;     // M108 came
+  double report_every_s_ = 0;  // M155
+  double next_auto_s_ = kNever;
 
   // the machine
   std::deque<double> planned_ends_s_;

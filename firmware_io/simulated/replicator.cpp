@@ -87,6 +87,13 @@ void Replicator::cancel_at_panel() {
   tell_cancelled_ = true;
 }
 
+void Replicator::press_pause() {
+  if (state_ != kRunning && state_ != kPausedState) return;
+  paused_ = !paused_;
+  state_ = paused_ ? kPausedState : kRunning;
+  busy_until_s_ = std::max(busy_until_s_, now_s_);
+}
+
 void Replicator::overheat() {
   clear();
   overheated_ = true;

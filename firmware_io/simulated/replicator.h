@@ -22,6 +22,7 @@ class Replicator : public Firmware {
 
   // What a person or the machine itself may do in the middle of a build.
   void cancel_at_panel();
+  void press_pause();  // at its panel: pauses, or goes on
   void overheat();
   void power_cycle();
 

@@ -103,11 +103,7 @@ void Replicator::take_query(double now_s) {
       stop_at_s_ = now_s + pace_.line_s(pace_.machine_s(kAbort_s));
       return answer(0x81);
     case 0x08:
-      if (state_ == kRunning || state_ == kPausedState) {
-        paused_ = !paused_;
-        state_ = paused_ ? kPausedState : kRunning;
-        busy_until_s_ = std::max(busy_until_s_, now_s);
-      }
+      press_pause();
       return answer(0x81);
     case 0x0A:
       return take_tool_query(now_s);

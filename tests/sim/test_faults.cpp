@@ -7,12 +7,10 @@
 #include <cstdlib>
 #include <optional>
 
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g_link.h"
 #include "firmware_io/simulated/marlin.h"
 #include "firmware_io/simulated/replicator.h"
-#include "sim/faulty_port.h"
 #include "sim/programs.h"
+#include "sim/scenario.h"
 
 namespace packmerger::test {
 namespace {
@@ -52,16 +50,6 @@ std::optional<Error> failure_of(const Print& print) {
   return std::nullopt;
 }
 
-// Those of `executed` that belong to the program.
-std::vector<std::string> only(const std::vector<std::string>& executed,
-                              const std::vector<std::string>& program) {
-  std::vector<std::string> kept;
-  for (const std::string& command : executed)
-    if (std::find(program.begin(), program.end(), command) != program.end())
-      kept.push_back(command);
-  return kept;
-}
-
 bool is_prefix(const std::vector<std::string>& part, const std::vector<std::string>& whole) {
   return part.size() <= whole.size() && std::equal(part.begin(), part.end(), whole.begin());
 }
@@ -70,6 +58,20 @@ void expect_true_cause(const Error& error) {
   RC_ASSERT(error.fault() == Fault::kIo || error.fault() == Fault::kUnavailable);
   RC_ASSERT(!std::string(error.what()).empty());
   RC_ASSERT(!error.hint().empty());
+}
+
+// In some of the prints somebody pauses and goes on.
+void pause_sometimes(FaultyPort& port, PrintControl& control) {
+  if (*rc::gen::arbitrary<bool>()) return;
+  const auto at = *rc::gen::inRange<std::size_t>(5, 150);
+  port.on_step = [&port, &control, at, paused_s = 0.0, ended = false](std::size_t written) mutable {
+    if (written >= at && paused_s == 0) {
+      control.pause();
+      paused_s = port.now_s();
+    } else if (paused_s > 0 && port.now_s() > paused_s + 100 && !std::exchange(ended, true)) {
+      control.resume();
+    }
+  };
 }
 
 struct Tally {
@@ -85,8 +87,12 @@ void check_gcode_print(Tally& tally, simulated::MarlinTraits traits) {
   FaultyPort port(firmware, any_rates(), *rc::gen::arbitrary<std::uint64_t>());
   const std::vector<std::string> program = gcode_program(kCommands);
   PrintControl control;
+  pause_sometimes(port, control);
+  StreamOptions windowed = options();
+  windowed.pause_gcode = "M117 standing";
+  windowed.window_bytes = *rc::gen::element<std::size_t>(0, 40, 96);
   const auto failure =
-      failure_of([&] { print_gcode(port, joined(program), options(), {}, control); });
+      failure_of([&] { print_gcode(port, joined(program), windowed, {}, control); });
   const std::vector<std::string> executed = only(port.executed(), program);
   RC_ASSERT(is_prefix(executed, program));
   if (failure)
@@ -130,6 +136,7 @@ void check_x3g_print(Tally& tally) {
   FaultyPort port(firmware, rates, *rc::gen::arbitrary<std::uint64_t>());
   const X3gProgram program = x3g_program(kCommands);
   PrintControl control;
+  pause_sometimes(port, control);
   const auto failure = failure_of([&] { print_x3g(port, program.bytes, options(), {}, control); });
   std::vector<std::string> executed = port.executed();
   // A build start that the channel doubled names the build again and begins the count anew.

@@ -3,15 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <optional>
-
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g_link.h"
 #include "firmware_io/simulated/marlin.h"
 #include "firmware_io/simulated/replicator.h"
-#include "sim/faulty_port.h"
 #include "sim/programs.h"
+#include "sim/scenario.h"
 
 namespace packmerger::test {
 namespace {
@@ -21,31 +16,6 @@ using simulated::MarlinTraits;
 using simulated::Pace;
 using simulated::Replicator;
 using ::testing::HasSubstr;
-
-StreamOptions options() {
-  StreamOptions options;
-  options.boot_wait_s = 0.1;
-  options.safe_gcode = "M104 S0\nM140 S0\n";
-  options.build_name = "scenario";
-  return options;
-}
-
-std::optional<Error> print(FaultyPort& port, bool gcode, const std::string& program,
-                           PrintControl& control, const PrintListener& listener = {}) {
-  try {
-    if (gcode)
-      print_gcode(port, program, options(), listener, control);
-    else
-      print_x3g(port, program, options(), listener, control);
-  } catch (const Error& error) {
-    return error;
-  }
-  return std::nullopt;
-}
-
-std::size_t count(const std::vector<std::string>& list, const std::string& text) {
-  return static_cast<std::size_t>(std::count(list.begin(), list.end(), text));
-}
 
 TEST(Marlin, PrintsAndProvesIt) {
   Marlin firmware(Pace{1, false});
@@ -144,36 +114,6 @@ TEST(Marlin, PausesAreRefusedWhereNobodyCanBeAsked) {
   EXPECT_EQ(count(port.executed(), "G28"), 0u);
 }
 
-// A firmware of a few words, for what the simulated ones never do.
-class Parrot : public simulated::Firmware {
- public:
-  explicit Parrot(std::function<std::string(const std::string&)> answer)
-      : answer_(std::move(answer)) {}
-  void receive(std::string_view bytes, double) override {
-    for (char c : bytes) {
-      if (c != '\n') {
-        line_ += c;
-        continue;
-      }
-      if (!line_.empty()) {
-        output_ += answer_(line_);
-        executed_.push_back(line_);
-      }
-      line_.clear();
-    }
-  }
-  void advance(double) override {}
-  double next_event_s() const override { return simulated::kNever; }
-
- private:
-  std::function<std::string(const std::string&)> answer_;
-  std::string line_;
-};
-
-std::string polite(const std::string& line) {
-  return line == "M115" ? "FIRMWARE_NAME:Parrot\nok\n" : "ok\n";
-}
-
 TEST(Marlin, TenRequestsForOneLineEndThePrint) {
   Parrot firmware([](const std::string& line) {
     return line.rfind("N5 ", 0) == 0 ? "Resend: 5\nok\n" : polite(line);
@@ -247,6 +187,34 @@ TEST(Links, TheOtherProtocolIsTheWrongPrinter) {
   ASSERT_TRUE(gcode_failure);
   EXPECT_EQ(gcode_failure->fault(), Fault::kUnavailable);
   EXPECT_TRUE(replicator_port.executed().empty());
+}
+
+// The profile's link.machine against what the simulated machines say.
+TEST(Links, OnlyTheMachineThatIsWanted) {
+  struct Case {
+    bool gcode;
+    const char* wanted;
+    bool fits;
+  };
+  for (const auto& [gcode, wanted, fits] :
+       {Case{true, "packmerger", true}, Case{true, "Marlin 2.1.2", true},
+        Case{true, "Prusa MK3", false}, Case{true, "PROTOCOL", false},
+        Case{false, "Sailfish 7.8", true}, Case{false, "MakerBot", false}}) {
+    Marlin marlin(Pace{1, true});
+    Replicator replicator(Pace{1, true});
+    FaultyPort port(gcode ? static_cast<simulated::Firmware&>(marlin) : replicator);
+    PrintControl control;
+    StreamOptions options = scenario_options();
+    options.machine = wanted;
+    const auto failure =
+        print(port, gcode, gcode ? "G28\n" : x3g_program(2).bytes, control, {}, options);
+    EXPECT_EQ(failure.has_value(), !fits) << wanted;
+    if (!failure) continue;
+    EXPECT_EQ(failure->fault(), Fault::kUnavailable);
+    EXPECT_THAT(failure->what(), HasSubstr(wanted));
+    EXPECT_THAT(failure->what(), HasSubstr(gcode ? "PackMerger (Marlin 2.1.2" : "Sailfish 7.8"));
+    EXPECT_EQ(count(port.executed(), "G28"), 0u);
+  }
 }
 
 TEST(Replicator, FullBufferIsWaitedOut) {

@@ -1,0 +1,144 @@
+// What a printer's reply to a line of G-code means.
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "firmware_io/ascii.h"
+#include "firmware_io/gcode.h"
+
+namespace packmerger {
+
+namespace {
+
+using ascii::has;
+using ascii::is_digit;
+using ascii::one_of;
+using ascii::trim;
+
+bool starts_with_any_case(std::string_view text, std::string_view prefix) {
+  return text.size() >= prefix.size() &&
+         std::equal(prefix.begin(), prefix.end(), text.begin(), [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) ==
+                  std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
+// The number after "Resend:", which firmwares write "Resend: 3", "Resend:3", "rs 3", "rs N3" or
+// "Resend: N:3"; 0 where there is none.
+std::size_t first_number(std::string_view text) {
+  std::size_t i = 0;
+  while (i < text.size() && !is_digit(text[i])) ++i;
+  std::size_t number = 0;
+  for (; i < text.size() && is_digit(text[i]) && number < 100'000'000; ++i)
+    number = number * 10 + static_cast<std::size_t>(text[i] - '0');
+  return number;
+}
+
+// What Marlin prints when it stops for good, and OctoPrint's list of errors that mean it will.
+bool tells_halt(std::string_view line) {
+  return has(line, "halted") || has(line, "kill() called") || has(line, "KILL caused") ||
+         has(line, "Watchdog barked");
+}
+
+bool tells_heater_failure(std::string_view line) {
+  static constexpr std::array<std::string_view, 6> kTexts = {
+      "Heating failed",    "Thermal Runaway",   "Thermal Malfunction",
+      "MAXTEMP triggered", "MINTEMP triggered", "Invalid extruder number"};
+  return std::any_of(kTexts.begin(), kTexts.end(),
+                     [&](std::string_view text) { return has(line, text); });
+}
+
+// The cause of a reset, which Marlin prints right after "start".
+bool tells_reset(std::string_view line) {
+  static constexpr std::array<std::string_view, 5> kTexts = {
+      "PowerUp", "External Reset", "Brown out Reset", "Watchdog Reset", "Software Reset"};
+  if (line == "start") return true;
+  if (!line.starts_with("echo:")) return false;
+  const std::string_view text = trim(line.substr(5));
+  return one_of(text, kTexts);
+}
+
+bool is_temperature(std::string_view line) {
+  return line.starts_with("T:") || line.starts_with("T0:") || line.starts_with("B:");
+}
+
+bool is_position(std::string_view line) { return line.starts_with("X:") && has(line, "Y:"); }
+
+bool is_ok(std::string_view line) {
+  return line.starts_with("ok") &&
+         (line.size() == 2 || !std::isalnum(static_cast<unsigned char>(line[2])));
+}
+
+void read_ok(std::string_view line, GcodeReply& reply) {
+  reply.kind = GcodeReplyKind::kOk;
+  reply.has_temperature = has(line, " T:") || has(line, " T0:") || has(line, " B:");
+  reply.has_position = has(line, "X:") && has(line, "Y:");
+  reply.has_firmware = has(line, "FIRMWARE_NAME:");
+}
+
+// What the printer asks of its host.
+void read_action(std::string_view action, GcodeReply& reply) {
+  constexpr std::string_view kBegin = "prompt_begin";
+  constexpr std::array<std::string_view, 2> kButtons = {"prompt_button", "prompt_choice"};
+  const std::string_view word = action.substr(0, action.find(' '));
+  reply.text = trim(action.substr(word.size()));
+  if (word == kBegin) reply.kind = GcodeReplyKind::kPrompt;
+  if (one_of(word, kButtons)) reply.kind = GcodeReplyKind::kPromptButton;
+  if (word == "pause" || word == "paused") reply.kind = GcodeReplyKind::kPause;
+  if (word == "resume" || word == "resumed") reply.kind = GcodeReplyKind::kResume;
+  if (word == "cancel") reply.kind = GcodeReplyKind::kCancel;
+  reply.waiting = word == "paused";
+}
+
+// Lines that begin with a word of their own; false where none does.
+bool read_by_prefix(std::string_view line, GcodeReply& reply) {
+  if (starts_with_any_case(line, "resend") || starts_with_any_case(line, "rs ")) {
+    reply.kind = GcodeReplyKind::kResend;
+    reply.number = first_number(line);
+  } else if (line.starts_with("echo:busy:") || line.starts_with("busy:")) {
+    reply.kind = GcodeReplyKind::kBusy;
+    reply.waiting = has(line, "paused for");
+  } else if (line == "wait") {
+    reply.kind = GcodeReplyKind::kIdle;
+  } else if (line.starts_with("//action:")) {
+    read_action(line.substr(9), reply);
+  } else if (line.starts_with("Cap:")) {
+    reply.kind = GcodeReplyKind::kCapability;
+    reply.text = line.substr(4);
+  } else if (has(line, "FIRMWARE_NAME:")) {
+    reply.kind = GcodeReplyKind::kFirmware;
+  } else if (has(line, "SD printing")) {
+    reply.kind = GcodeReplyKind::kCard;
+    reply.waiting = line.starts_with("SD printing byte");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+GcodeReply read_gcode_reply(std::string_view line) {
+  const std::string_view text = trim(line);
+  GcodeReply reply;
+  reply.text = text;
+  if (is_ok(text)) {
+    read_ok(text, reply);
+  } else if (starts_with_any_case(text, "error") || text.starts_with("!!")) {
+    if (tells_heater_failure(text))
+      reply.kind = GcodeReplyKind::kThermal;
+    else if (tells_halt(text) || text.starts_with("!!"))
+      reply.kind = GcodeReplyKind::kHalted;
+  } else if (tells_reset(text)) {
+    reply.kind = GcodeReplyKind::kStart;
+  } else if (is_temperature(text)) {
+    reply.kind = GcodeReplyKind::kTemperature;
+  } else if (is_position(text)) {
+    reply.kind = GcodeReplyKind::kPosition;
+  } else {
+    read_by_prefix(text, reply);
+  }
+  return reply;
+}
+
+}  // namespace packmerger

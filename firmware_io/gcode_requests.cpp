@@ -1,0 +1,136 @@
+// What people and the machine itself ask of a print: to cancel, pause, go on, stop at once.
+#include <algorithm>
+#include <utility>
+
+#include "firmware_io/gcode_stream.h"
+
+namespace packmerger {
+
+namespace {
+
+// Lines this far back may still be asked for again.
+constexpr std::size_t kSlack = 10;
+// How often a printer that stands still is asked for its temperatures, which keeps it and the line
+// awake.
+constexpr double kPoll_s = 2;
+
+}  // namespace
+
+std::vector<std::string> gcode_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (const GcodeCommand& command : gcode_commands(text)) lines.emplace_back(command.text);
+  return lines;
+}
+
+void GcodeStream::obey_requests() {
+  if (control_.stopped()) stop_at_once();
+  if (control_.cancelled() && !cancelling_) begin_cancel();
+  if (const auto wanted = control_.take_pause_request()) {
+    parks_ = *wanted && !paused_ ? true : parks_;
+    paused_ = *wanted;
+  }
+  const int answer = control_.take_answer();
+  if (answer < 0 || cancelling_) return;
+  send_raw(abilities_.prompts ? "M876 S" + std::to_string(answer) : std::string("M108"));
+}
+
+// Only an M112 of its own is obeyed before its turn; the empty line ends whatever half line is in
+// the printer.
+void GcodeStream::stop_at_once() {
+  may_send_ = false;
+  channel_.send("\nM112");
+  throw_stopped();
+}
+
+// M410 drops the planned moves, M108 ends a wait for heat or for the user. Both are obeyed at once
+// only when they are not numbered. The program is then replaced by the safe text; what the printer
+// may still ask for again becomes M105, which does nothing.
+void GcodeStream::begin_cancel() {
+  cancelling_ = true;
+  paused_ = false;
+  reporter_.state(PrintState::kCancelling);
+  send_raw("M410");
+  send_raw("M108");
+  const std::size_t first =
+      std::min(highest_ > kSlack ? highest_ - kSlack : 1, commands_.size() + 1);
+  commands_.resize(highest_);
+  for (std::size_t i = first; i <= highest_; ++i) commands_[i - 1] = "M105";
+  for (std::string& line : gcode_lines(options_.safe_gcode)) commands_.push_back(std::move(line));
+  position_seen_ = false;
+}
+
+// A machine that says "paused" has parked by itself; one that says "pause" leaves that to its host.
+void GcodeStream::handle_action(const GcodeReply& reply) {
+  switch (reply.kind) {
+    case GcodeReplyKind::kPrompt:
+      prompt_ = reply.text;
+      choices_.clear();
+      return reporter_.state(PrintState::kWaiting, prompt_, choices_);
+    case GcodeReplyKind::kPromptButton:
+      choices_.push_back(reply.text);
+      return reporter_.state(PrintState::kWaiting, prompt_, choices_);
+    case GcodeReplyKind::kPause:
+      if (!paused_) parks_ = !reply.waiting;
+      paused_ = true;
+      if (reply.waiting) reporter_.state(PrintState::kPaused, "at the printer");
+      return;
+    case GcodeReplyKind::kResume:
+      paused_ = false;
+      return show_state();
+    case GcodeReplyKind::kCancel:
+      cancelled_at_printer_ = true;
+      return begin_cancel();
+    default:
+      return;
+  }
+}
+
+// No line of the program is given until the pause ends. Returns the number of the next one.
+std::size_t GcodeStream::pause(std::size_t number) {
+  between_ = true;
+  reporter_.state(PrintState::kPaused, parks_ ? "" : "at the printer");
+  const bool parked = std::exchange(parks_, false);
+  std::vector<std::string> resume = gcode_lines(options_.resume_gcode);
+  if (!resume.empty() || !options_.pause_gcode.empty())
+    for (std::string& line : gcode_modes(commands_, number - 1)) resume.push_back(std::move(line));
+  if (parked) {
+    std::vector<std::string> lines = gcode_lines(options_.pause_gcode);
+    lines.insert(lines.begin(), "M400");
+    number = execute_between(number, lines);
+  }
+  stand_still();
+  if (parked && !cancelling_) number = execute_between(number, resume);
+  between_ = false;
+  return number;
+}
+
+// Listens, asks for the temperatures, and never gives up: a pause may take as long as it likes.
+void GcodeStream::stand_still() {
+  double asked_at_s = channel_.now_s();
+  while (paused_ && !cancelling_) {
+    obey_requests();
+    if (channel_.now_s() - asked_at_s >= kPoll_s) {
+      unanswered_.clear();
+      send_raw("M105");
+      m105_behind_ = true;
+      asked_at_s = channel_.now_s();
+    }
+    const auto reply = channel_.receive(kSlice_s);
+    // A line that is really missing is asked for again as soon as the next one is given.
+    if (reply && reply->kind != GcodeReplyKind::kResend && reply->kind != GcodeReplyKind::kIdle)
+      handle(*reply);
+  }
+}
+
+// Executes lines in front of line `number`, which was never given, with numbers of their own.
+std::size_t GcodeStream::execute_between(std::size_t number,
+                                         const std::vector<std::string>& lines) {
+  const std::size_t end = number + lines.size();
+  commands_.insert(commands_.begin() + static_cast<std::ptrdiff_t>(number - 1), lines.begin(),
+                   lines.end());
+  inserted_.push_back({number, lines.size()});
+  while (number < end && !cancelling_) number = exchange(number);
+  return number;
+}
+
+}  // namespace packmerger

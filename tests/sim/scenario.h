@@ -1,0 +1,84 @@
+// What the tests of whole prints in simulated time share.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "firmware_io/gcode_link.h"
+#include "firmware_io/s3g_link.h"
+#include "sim/faulty_port.h"
+
+namespace packmerger::test {
+
+inline StreamOptions scenario_options() {
+  StreamOptions options;
+  options.boot_wait_s = 0.1;
+  options.safe_gcode = "M104 S0\nM140 S0\n";
+  options.build_name = "scenario";
+  return options;
+}
+
+// What ended the print before its end.
+inline std::optional<Error> print(FaultyPort& port, bool gcode, const std::string& program,
+                                  PrintControl& control, const PrintListener& listener = {},
+                                  const StreamOptions& options = scenario_options()) {
+  try {
+    if (gcode)
+      print_gcode(port, program, options, listener, control);
+    else
+      print_x3g(port, program, options, listener, control);
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+inline std::size_t count(const std::vector<std::string>& list, const std::string& text) {
+  return static_cast<std::size_t>(std::count(list.begin(), list.end(), text));
+}
+
+// Those of `executed` that belong to the program.
+inline std::vector<std::string> only(const std::vector<std::string>& executed,
+                                     const std::vector<std::string>& program) {
+  std::vector<std::string> kept;
+  for (const std::string& command : executed)
+    if (count(program, command) > 0) kept.push_back(command);
+  return kept;
+}
+
+// A firmware of a few words, for what the simulated ones never do.
+class Parrot : public simulated::Firmware {
+ public:
+  explicit Parrot(std::function<std::string(const std::string&)> answer)
+      : answer_(std::move(answer)) {}
+  void receive(std::string_view bytes, double) override {
+    for (char c : bytes) {
+      if (c != '\n') {
+        line_ += c;
+        continue;
+      }
+      if (!line_.empty()) {
+        output_ += answer_(line_);
+        executed_.push_back(line_);
+      }
+      line_.clear();
+    }
+  }
+  void advance(double) override {}
+  double next_event_s() const override { return simulated::kNever; }
+
+ private:
+  std::function<std::string(const std::string&)> answer_;
+  std::string line_;
+};
+
+inline std::string polite(const std::string& line) {
+  return line == "M115" ? "FIRMWARE_NAME:Parrot\nok\n" : "ok\n";
+}
+
+}  // namespace packmerger::test
