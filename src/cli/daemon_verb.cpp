@@ -58,13 +58,17 @@ std::string time_text(const nlohmann::json& unix_s) {
                      local.tm_mday, local.tm_hour, local.tm_min);
 }
 
-std::string text_of(const nlohmann::json& object, const char* key) {
-  const auto found = object.find(key);
-  std::string text = found != object.end() && found->is_string() ? found->get<std::string>() : "";
+std::string plain_text(const nlohmann::json& value) {
+  std::string text = value.is_string() ? value.get<std::string>() : "";
   std::replace_if(
       text.begin(), text.end(),
       [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
   return text;
+}
+
+std::string text_of(const nlohmann::json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() ? "" : plain_text(*found);
 }
 
 }  // namespace packmerger::cli

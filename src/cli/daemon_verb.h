@@ -28,7 +28,10 @@ void print_table(const std::vector<std::vector<std::string>>& rows);
 // Local time, "2026-03-01 14:05"; "-" for null.
 std::string time_text(const nlohmann::json& unix_s);
 
-// A text of the daemon's reply; empty when it is not there.
+// A text of the daemon's reply, control characters taken out; empty where it is none.
+std::string plain_text(const nlohmann::json& value);
+
+// A member that is a text; empty when it is not there.
 std::string text_of(const nlohmann::json& object, const char* key);
 
 }  // namespace packmerger::cli

@@ -13,11 +13,25 @@ using nlohmann::json;
 struct Arguments {
   DaemonArguments daemon;
   std::string name;
+  int choice = 0;
 };
+
+// "waiting 42 %, Change the filament (Continue, Stop)"
+std::string print_text(const json& print) {
+  std::string text =
+      fmt::format("{} {:.0f} %", text_of(print, "stage"), 100 * print.value("fraction", 0.0));
+  if (const std::string what = text_of(print, "text"); !what.empty()) text += ", " + what;
+  std::string choices;
+  for (const json& choice : print.value("choices", json::array()))
+    choices += (choices.empty() ? "" : ", ") + plain_text(choice);
+  return choices.empty() ? text : text + " (" + choices + ")";
+}
 
 std::vector<std::string> row_of(const json& printer) {
   const json job = printer.value("job", json());
   std::string doing = job.is_number() ? fmt::format("job {}", job.get<std::int64_t>()) : "idle";
+  const json print = printer.value("print", json());
+  if (print.is_object()) doing += ": " + print_text(print);
   if (printer.value("paused", false)) doing += ", paused";
   const std::string port = text_of(printer, "port");
   return {text_of(printer, "name"),
@@ -41,8 +55,9 @@ void list(const Arguments& arguments) {
 }
 
 void change(const Arguments& arguments, const std::string& verb) {
-  const json printer =
-      ask(arguments.daemon, {{"verb", "printers." + verb}, {"name", arguments.name}});
+  json request = {{"verb", "printers." + verb}, {"name", arguments.name}};
+  if (verb == "answer") request["choice"] = arguments.choice;
+  const json printer = ask(arguments.daemon, request);
   if (arguments.daemon.json) return print_json(printer);
   print_table({kHeading, row_of(printer)});
 }
@@ -64,10 +79,16 @@ void add_printers(CLI::App& program) {
   for (const auto& [name, help] :
        {std::pair{"clear",
                   "Says that the printer's bed is clear, so that the next print may start"},
-        std::pair{"pause", "Starts no further print there"},
-        std::pair{"resume", "Starts prints there again"}}) {
+        std::pair{"pause", "Pauses the print that runs there, and starts no other"},
+        std::pair{"resume", "Lets the print go on, and starts prints there again"},
+        std::pair{"answer", "Answers what the printer asks its user"},
+        std::pair{"stop", "Stops the print at once, as an emergency stop does; it fails"}}) {
     CLI::App* one = action(name, help);
     one->add_option("NAME", arguments->name, "the printer's name")->required();
+    if (name == std::string_view("answer"))
+      one->add_option("CHOICE", arguments->choice, "one of its choices, counted from 0")
+          ->check(CLI::Range(0, 99))
+          ->capture_default_str();
     one->callback([arguments, name = std::string(name)] { change(*arguments, name); });
   }
 }

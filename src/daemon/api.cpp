@@ -13,6 +13,7 @@ using Verb = json (*)(Foreman&, const json&);
 
 constexpr int kDefaultJobs = 100;
 constexpr int kMostJobs = 1000;
+constexpr int kMostChoices = 99;
 
 [[noreturn]] void not_understood(const std::string& what) {
   throw Error(Fault::kUsage, what, "docs/DAEMON.md lists the requests.");
@@ -80,6 +81,16 @@ json pause_printer(Foreman& foreman, const json& request) {
   return view_of(foreman, foreman.pause(name_of(request), paused));
 }
 
+json answer_printer(Foreman& foreman, const json& request) {
+  const std::int64_t choice = whole_number(request, "choice", 0);
+  if (choice < 0 || choice > kMostChoices) not_understood("choice must be from 0 to 99");
+  return view_of(foreman, foreman.answer(name_of(request), static_cast<int>(choice)));
+}
+
+json stop_printer(Foreman& foreman, const json& request) {
+  return view_of(foreman, foreman.stop_at_once(name_of(request)));
+}
+
 const std::map<std::string, Verb, std::less<>>& verbs() {
   static const std::map<std::string, Verb, std::less<>> kVerbs = {
       {"jobs.list", list_jobs},
@@ -92,6 +103,8 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
       {"printers.clear", clear_printer},
       {"printers.pause", pause_printer<true>},
       {"printers.resume", pause_printer<false>},
+      {"printers.answer", answer_printer},
+      {"printers.stop", stop_printer},
   };
   return kVerbs;
 }

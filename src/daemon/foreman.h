@@ -74,7 +74,12 @@ class Foreman {
   JobRecord cancel(std::int64_t id);
   JobRecord again(std::int64_t id);  // a new job from an ended one; it needs no approval
   PrinterRecord clear(const std::string& printer);
+  // Pauses the print that runs there and lets no other start; or the contrary.
   PrinterRecord pause(const std::string& printer, bool paused);
+  // Answers what the printer asks its user: the index of one of its choices, 0 to go on.
+  PrinterRecord answer(const std::string& printer, int choice);
+  // Stops the print that runs there at once; it fails.
+  PrinterRecord stop_at_once(const std::string& printer);
 
   const DaemonConfig& config() const { return config_; }
   const JobStore& store() const { return store_; }
@@ -86,6 +91,8 @@ class Foreman {
   std::filesystem::path job_path(std::int64_t id) const;
   JobRecord get(std::int64_t id) const;
   const PrinterConfig& get_printer(const std::string& name) const;
+  LiveJob* printing_at(const std::string& printer);
+  LiveJob& get_printing(const std::string& printer);
   void say(const JobRecord& job, const std::string& text) const;
   void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
            const std::string& note = {});

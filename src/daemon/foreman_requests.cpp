@@ -1,4 +1,6 @@
 // What people ask the foreman for.
+#include <algorithm>
+
 #include "daemon/foreman.h"
 #include "daemon/move_file.h"
 
@@ -129,13 +131,49 @@ PrinterRecord Foreman::clear(const std::string& name) {
   return printer;
 }
 
+// Nothing where nothing is streamed there.
+LiveJob* Foreman::printing_at(const std::string& printer) {
+  const auto found = live_.find(sending_at(printer));
+  const PrinterConfig& config = get_printer(printer);
+  if (found == live_.end() || !found->second.control || config.hands_over()) return nullptr;
+  return &found->second;
+}
+
+LiveJob& Foreman::get_printing(const std::string& printer) {
+  if (LiveJob* live = printing_at(printer)) return *live;
+  throw Error(Fault::kUsage, "The printer " + printable(printer) + " is not printing",
+              "packmerger printers list shows what each of them does.");
+}
+
 PrinterRecord Foreman::pause(const std::string& name, bool paused) {
-  get_printer(name);
+  LiveJob* live = printing_at(name);
   PrinterRecord printer = store_.printer(name);
   printer.paused = paused;
   store_.save(printer);
+  if (live != nullptr) paused ? live->control->pause() : live->control->resume();
   log_("printer " + name + (paused ? ": paused, no new print starts" : ": resumed"));
   return printer;
+}
+
+PrinterRecord Foreman::answer(const std::string& name, int choice) {
+  LiveJob& live = get_printing(name);
+  if (live.print.state != PrintState::kWaiting)
+    throw Error(Fault::kUsage, "The printer " + name + " asks nothing",
+                "packmerger printers list shows what each of them does.");
+  const auto choices = static_cast<int>(live.print.choices.size());
+  if (choice < 0 || choice >= std::max(choices, 1))
+    throw Error(Fault::kUsage, "The printer " + name + " offers no such choice",
+                "packmerger printers list shows its choices, counted from 0.");
+  live.control->answer(choice);
+  log_("printer " + name + ": answered " + std::to_string(choice));
+  return store_.printer(name);
+}
+
+PrinterRecord Foreman::stop_at_once(const std::string& name) {
+  LiveJob& live = get_printing(name);
+  live.control->stop_at_once();
+  log_("printer " + name + ": stopped at once");
+  return store_.printer(name);
 }
 
 }  // namespace packmerger

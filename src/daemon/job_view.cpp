@@ -75,16 +75,21 @@ std::string status_text(const Foreman& foreman, const JobRecord& job) {
   return {};
 }
 
-json progress_view(const JobRecord& job, const LiveJob* live) {
-  if (live == nullptr) return nullptr;
-  if (job.state == JobState::kPreparing)
-    return {{"stage", live->stage}, {"fraction", live->fraction}};
-  if (job.state != JobState::kSending) return nullptr;
+json print_view(const LiveJob* live) {
+  if (live == nullptr || !live->control) return nullptr;
   return {{"stage", print_state_name(live->print.state)},
           {"fraction", fraction_of(live->print)},
           {"done", live->print.done},
           {"total", live->print.total},
-          {"text", live->print.text}};
+          {"text", live->print.text},
+          {"choices", live->print.choices}};
+}
+
+json progress_view(const JobRecord& job, const LiveJob* live) {
+  if (live == nullptr) return nullptr;
+  if (job.state == JobState::kPreparing)
+    return {{"stage", live->stage}, {"fraction", live->fraction}};
+  return job.state == JobState::kSending ? print_view(live) : json();
 }
 
 json estimates_view(const JobRecord& job) {
@@ -183,7 +188,8 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"simulated", printer.simulated},
           {"bed", bed},
           {"paused", record.paused},
-          {"job", sending == 0 ? json() : json(sending)}};
+          {"job", sending == 0 ? json() : json(sending)},
+          {"print", print_view(foreman.live(sending))}};
 }
 
 std::string result_note(const JobRecord& job) {

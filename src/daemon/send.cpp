@@ -23,6 +23,10 @@ StreamOptions stream_options(const Profile& profile, const PreparedJob& job, int
   options.build_name =
       job.trays > 1 ? fmt::format("{} {}/{}", job.title, tray, job.trays) : job.title;
   options.safe_gcode = profile.link.safe_gcode;
+  options.pause_gcode = profile.link.pause_gcode;
+  options.resume_gcode = profile.link.resume_gcode;
+  options.window_bytes = static_cast<std::size_t>(profile.link.window_bytes);
+  options.machine = profile.link.machine;
   return options;
 }
 

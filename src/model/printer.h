@@ -123,6 +123,10 @@ struct LinkSettings {
   std::vector<std::string> usb_ids;  // "vvvv:pppp", lower-case hex
   std::string device_id;             // dialect usb: part of the name the printer must tell
   std::string safe_gcode;            // sent after a failure or a cancel: heaters off
+  std::string pause_gcode;           // executed once a print stands paused; dialect gcode
+  std::string resume_gcode;          // executed before it goes on; dialect gcode
+  int window_bytes = 0;              // unacknowledged at most; 0: one line at a time
+  std::string machine;               // must be in what the machine says of itself; may be empty
 };
 
 struct Profile {

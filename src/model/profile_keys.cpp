@@ -246,19 +246,28 @@ void add_slicer(SlicerSettings& s, std::vector<Key>& keys) {
 }
 
 void add_link(LinkSettings& s, std::vector<Key>& keys) {
-  keys.insert(keys.end(), {{"link.baud", IntegerKey{&s.baud, from_to(300, 4000000)}, "baud",
-                            "Speed of the port."},
-                           {"link.timeout_s", NumberKey{&s.timeout_s, above(0, 3600)}, "s",
-                            "Silence after which the printer counts as gone."},
-                           {"link.boot_wait_s", NumberKey{&s.boot_wait_s, from_to(0, 120)}, "s",
-                            "Wait after opening the port, for boards that reset then."},
-                           {"link.usb_ids", TextsKey{&s.usb_ids, usb_form()}, "",
-                            "USB vendor and product numbers the machine shows itself by."},
-                           {"link.device_id", TextKey{&s.device_id, one_line()}, "",
-                            "Text that must be part of the maker's and model's name that a printer "
-                            "of dialect usb tells (IEEE 1284)."},
-                           {"link.safe_gcode", TextKey{&s.safe_gcode, {}}, "",
-                            "Sent after a failure or a cancel: heaters off."}});
+  keys.insert(
+      keys.end(),
+      {{"link.baud", IntegerKey{&s.baud, from_to(300, 4000000)}, "baud", "Speed of the port."},
+       {"link.timeout_s", NumberKey{&s.timeout_s, above(0, 3600)}, "s",
+        "Silence after which the printer counts as gone."},
+       {"link.boot_wait_s", NumberKey{&s.boot_wait_s, from_to(0, 120)}, "s",
+        "Wait after opening the port, for boards that reset then."},
+       {"link.usb_ids", TextsKey{&s.usb_ids, usb_form()}, "",
+        "USB vendor and product numbers the machine shows itself by."},
+       {"link.device_id", TextKey{&s.device_id, one_line()}, "",
+        "Text that must be part of the maker's and model's name that a printer "
+        "of dialect usb tells (IEEE 1284)."},
+       {"link.safe_gcode", TextKey{&s.safe_gcode, {}}, "",
+        "Sent after a failure or a cancel: heaters off."},
+       {"link.pause_gcode", TextKey{&s.pause_gcode, {}}, "",
+        "Dialect gcode: executed when a print pauses and its moves are done."},
+       {"link.resume_gcode", TextKey{&s.resume_gcode, {}}, "",
+        "Dialect gcode: executed before it goes on; undoes the moves of pause_gcode."},
+       {"link.window_bytes", IntegerKey{&s.window_bytes, from_to(0, 96)}, "bytes",
+        "Dialect gcode: sent and not acknowledged at most; 0: a line at a time."},
+       {"link.machine", TextKey{&s.machine, one_line()}, "",
+        "What the machine must say of itself (M115, or its firmware), in part."}});
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TEST(Foreman, AModelOnASimulatedPrinterGoesAllTheWay) {
   const SendOrder send = shop.send_order("sim").value();
   EXPECT_EQ(send.folder, prepare.out);
   EXPECT_EQ(shop.job(1).state, JobState::kSending);
-  shop.tell(SendProgress{1, {PrintState::kPrinting, 5, 10, "T 200"}});
+  shop.tell(progress_of(1, PrintState::kPrinting, "T 200"));
   EXPECT_EQ(shop.view(1).at("status"), "printing 50 %, T 200");
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
   shop.run_the_clerk();
@@ -233,6 +233,58 @@ TEST(Api, AnswersEveryKindOfNonsense) {
   }
   EXPECT_TRUE(json::parse(answer(*shop.foreman_, std::string(60000, '['))).contains("error"));
   EXPECT_EQ(shop.ask({{"verb", "jobs.list"}}).at("result").size(), 1U);
+}
+
+// What the sender's thread would find at its control.
+TEST(Foreman, ARunningPrintIsPausedAndGoesOn) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  const SendOrder send = shop.send_order("sim").value();
+  EXPECT_TRUE(shop.ask({{"verb", "printers.pause"}, {"name", "sim"}}).at("ok"));
+  EXPECT_EQ(send.control->take_pause_request(), true);
+  shop.tell(progress_of(1, PrintState::kPaused));
+  const json view = shop.ask({{"verb", "printers.list"}}).at("result").at(2);
+  EXPECT_EQ(view.at("print").at("stage"), "paused");
+  EXPECT_EQ(view.at("paused"), true);
+  EXPECT_TRUE(shop.ask({{"verb", "printers.resume"}, {"name", "sim"}}).at("ok"));
+  EXPECT_EQ(send.control->take_pause_request(), false);
+  EXPECT_EQ(send.control->take_pause_request(), std::nullopt);
+  EXPECT_FALSE(send.control->cancelled());
+}
+
+TEST(Foreman, OnlyAQuestionIsAnsweredAndOnlyByItsChoices) {
+  Workshop shop;
+  const auto answer = [&](int choice) {
+    return shop.ask({{"verb", "printers.answer"}, {"name", "sim"}, {"choice", choice}});
+  };
+  EXPECT_EQ(answer(0).at("error").at("fault"), 2) << "nothing is printed there";
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  const SendOrder send = shop.send_order("sim").value();
+  EXPECT_EQ(answer(0).at("error").at("fault"), 2) << "nothing is asked";
+  shop.tell(progress_of(1, PrintState::kWaiting, "Purge more?", {"Yes", "No"}));
+  const json view = shop.ask({{"verb", "printers.list"}}).at("result").at(2);
+  EXPECT_EQ(view.at("print").at("choices"), (json{"Yes", "No"}));
+  EXPECT_EQ(answer(2).at("error").at("fault"), 2);
+  EXPECT_EQ(answer(-1).at("error").at("fault"), 2);
+  EXPECT_EQ(send.control->take_answer(), -1);
+  EXPECT_TRUE(answer(1).at("ok"));
+  EXPECT_EQ(send.control->take_answer(), 1);
+}
+
+TEST(Foreman, APrintStoppedAtOnceFails) {
+  Workshop shop;
+  const json stop = {{"verb", "printers.stop"}, {"name", "sim"}};
+  EXPECT_EQ(shop.ask(stop).at("error").at("fault"), 2) << "nothing is printed there";
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  const SendOrder send = shop.send_order("sim").value();
+  EXPECT_TRUE(shop.ask(stop).at("ok"));
+  EXPECT_TRUE(send.control->stopped());
+  shop.tell(SendEnded{1, SendOutcome::kFailed, {Fault::kIo, "stopped", "Look."}, ""});
+  EXPECT_EQ(shop.job(1).state, JobState::kFailed);
+  EXPECT_EQ(shop.ask(stop).at("error").at("fault"), 2);
 }
 
 }  // namespace

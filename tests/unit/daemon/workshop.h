@@ -29,6 +29,18 @@ inline PrinterConfig printer(const fs::path& folder, const std::string& name, Di
   return printer;
 }
 
+inline SendProgress progress_of(std::int64_t job, PrintState state, const std::string& text = {},
+                                std::vector<std::string> choices = {}) {
+  SendProgress progress;
+  progress.job = job;
+  progress.report.state = state;
+  progress.report.done = 5;
+  progress.report.total = 10;
+  progress.report.text = text;
+  progress.report.choices = std::move(choices);
+  return progress;
+}
+
 // A workshop whose worker, clerk and printers are played by the test, one order after the other.
 class Workshop {
  public:
