@@ -87,7 +87,7 @@ class UsbPrint {
     await_ready();
     reporter_.state(PrintState::kPrinting);
     while (sent_ < document_.size()) {
-      if (control_.cancelled()) cancel();
+      if (control_.cancelled() || control_.stopped()) cancel();
       const std::string_view block = document_.block(sent_);
       // A transfer that timed out or stalled may have moved some bytes: they are not sent again.
       const std::size_t taken = port_.write(block, kTransfer_s);
@@ -134,12 +134,13 @@ class UsbPrint {
   void pause() {
     std::array<char, 512> answers;
     for (const double end_s = port_.now_s() + kSlice_s; port_.now_s() < end_s;) {
-      if (control_.cancelled()) cancel();
+      if (control_.cancelled() || control_.stopped()) cancel();
       port_.read(answers.data(), answers.size(), end_s - port_.now_s());
     }
   }
 
   void cancel() {
+    if (control_.stopped()) throw_stopped();
     reporter_.state(PrintState::kCancelling);
     throw_cancelled();
   }
