@@ -57,6 +57,7 @@ void note(const GcodeReply& reply, Answer& answer) {
     case GcodeReplyKind::kCapability:
       if (reply.text == "PROMPT_SUPPORT:1") answer.abilities.prompts = true;
       if (reply.text == "AUTOREPORT_TEMP:1") answer.abilities.autoreport = true;
+      if (reply.text == "EMERGENCY_PARSER:1") answer.abilities.emergency_parser = true;
       break;
     case GcodeReplyKind::kCard:
       answer.prints_from_card = answer.prints_from_card || reply.waiting;
@@ -69,17 +70,22 @@ void note(const GcodeReply& reply, Answer& answer) {
   }
 }
 
-// Sends a line and collects what comes until done(answer), or until nothing came for wait_s.
+// Sends a line and collects what comes until done(answer), or until nothing came for wait_s. What
+// a printer says unasked, maybe without end, is no sign that an answer is on its way.
 template <typename Done>
 Answer ask(GcodeChannel& channel, std::string_view line, double wait_s, const PrintControl& control,
            const Done& done) {
   Answer answer;
   channel.send(line);
   double heard_at = channel.now_s();
-  while (!done(answer) && channel.now_s() - heard_at < wait_s) {
+  constexpr double kLongest = 5;  // times wait_s
+  const double end = heard_at + kLongest * wait_s;
+  while (!done(answer) && channel.now_s() < std::min(heard_at + wait_s, end)) {
     check_not_ended(control);
     if (const auto reply = channel.receive(std::min(kSlice_s, wait_s))) {
-      heard_at = channel.now_s();
+      const bool unasked =
+          reply->kind == GcodeReplyKind::kTemperature || reply->kind == GcodeReplyKind::kIdle;
+      if (!unasked) heard_at = channel.now_s();
       note(*reply, answer);
     }
   }

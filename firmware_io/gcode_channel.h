@@ -32,8 +32,9 @@ class GcodeChannel {
 
 // What the answer to M115 says.
 struct GcodeAbilities {
-  bool prompts = false;     // asks its user through the host, answered by M876
-  bool autoreport = false;  // tells its temperatures of its own once it is asked to (M155)
+  bool prompts = false;           // asks its user through the host
+  bool emergency_parser = false;  // reads M876 while it waits; else only M108 ends the wait
+  bool autoreport = false;        // tells its temperatures of its own once it is asked to (M155)
 };
 
 // Waits until the board has booted, asks who it is and whether it prints from its card, and sets

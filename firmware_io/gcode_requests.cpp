@@ -31,7 +31,7 @@ void GcodeStream::obey_requests() {
   }
   const int answer = control_.take_answer();
   if (answer < 0 || cancelling_) return;
-  send_raw(abilities_.prompts ? "M876 S" + std::to_string(answer) : std::string("M108"));
+  send_raw(abilities_.emergency_parser ? "M876 S" + std::to_string(answer) : std::string("M108"));
 }
 
 // Only an M112 of its own is obeyed before its turn; the empty line ends whatever half line is in

@@ -81,6 +81,7 @@ std::size_t GcodeStream::exchange(std::size_t number) {
       return resend_->number;
     }
     obey_requests();
+    watch_unproven_life();
     if (may_give_another()) give(last_ + 1);
     if (const auto reply = channel_.receive(resend_ ? kSettle_s : kSlice_s))
       handle(*reply);
@@ -116,7 +117,8 @@ void GcodeStream::give(std::size_t number) {
   channel_.send(line);
   last_ = number;
   highest_ = std::max(highest_, number);
-  alive_at_s_ = attempt_at_s_ = channel_.now_s();
+  alive_at_s_ = attempt_at_s_ = works_at_s_ = channel_.now_s();
+  doubt_after_s_ = options_.timeout_s;
   prompt_.clear();
   choices_.clear();
   show_state();
@@ -126,6 +128,8 @@ void GcodeStream::handle(const GcodeReply& reply) {
   const bool heating = is_heating(command(last_));
   // A temperature report may come on its own for ever: it proves nothing unless we wait for heat.
   if (reply.kind != GcodeReplyKind::kTemperature || heating) alive_at_s_ = channel_.now_s();
+  const bool waits_for_heat = reply.text.find(" W:") != std::string::npos;
+  if (reply.kind == GcodeReplyKind::kBusy || waits_for_heat) works_at_s_ = channel_.now_s();
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
       if (reply.has_position && is_behind_program(last_)) position_seen_ = true;
@@ -170,8 +174,10 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
     unanswered_.pop_front();
     if (resend_)
       resend_->due_s = channel_.now_s() + kSettle_s;
-    else if (number > 0)
+    else if (number > 0) {
+      acknowledged_ = std::max(acknowledged_, number);
       tell_done(number + 1);
+    }
   } else if (resend_) {
     // The request was stale, for instance the answer to a doubled line: the line itself was taken.
     resend_.reset();
@@ -187,12 +193,12 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
 void GcodeStream::handle_resend(std::size_t asked) {
   std::size_t next = asked;
   if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
-  if (asked > 0 && asked + kSlack < last_) {
+  // A printer that was reset asks for line 1; in the first lines that would seem to be near.
+  if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 0))) {
     if (asked == far_back_) {
       may_send_ = false;
       fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
-               " after line " + std::to_string(last_) +
-               "): it was reset in the middle of the print",
+               " after line " + std::to_string(last_) + "): it was probably reset",
            "Clear the bed and print the job again; check the printer's power supply.");
     }
     far_back_ = asked;
@@ -240,6 +246,15 @@ void GcodeStream::watch_silence() {
   double patience = limit / kTriesPerTimeout;
   if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
   if (now - std::max(alive_at_s_, attempt_at_s_) >= patience) recover();
+}
+
+// Reports that come unasked go on when the answer to the line got lost, so they are trusted for a
+// while only, and then for twice as long: heating may truly take that time.
+void GcodeStream::watch_unproven_life() {
+  if (!is_heating(command(last_)) || channel_.now_s() - works_at_s_ < doubt_after_s_) return;
+  works_at_s_ = channel_.now_s();
+  doubt_after_s_ *= 2;
+  recover();
 }
 
 // An empty line ends a half line that lost bytes left in the printer: Marlin then asks for the line

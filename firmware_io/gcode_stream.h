@@ -64,6 +64,7 @@ class GcodeStream {
   void handle_resend(std::size_t asked);
   void handle_failed_heater(const GcodeReply& reply);
   void watch_silence();
+  void watch_unproven_life();
   void recover();
   void send_raw(std::string_view line);
   void show_state();
@@ -107,9 +108,12 @@ class GcodeStream {
   int attempts_ = 0;
   double alive_at_s_ = 0;
   double attempt_at_s_ = 0;
+  double works_at_s_ = 0;  // last proof that the printer is still at the line
+  double doubt_after_s_ = 0;
 
   // over several exchanges
   std::size_t highest_ = 0;        // of all lines ever given
+  std::size_t acknowledged_ = 0;   // the highest that an ok was for
   std::size_t careful_until_ = 0;  // the line from which the window may be used again
   int unproven_ = 0;               // exchanges in a row that were taken for granted
   std::size_t asked_ = 0;          // the line last asked for,

@@ -102,6 +102,7 @@ std::string Channel::query(std::string_view payload, std::size_t reply_size) {
   for (int i = 0; i < kTries; ++i) {
     std::string reply;
     if (exchange(payload, expected, reply) != Outcome::kReply) {
+      missed_ = true;
       resynchronize();
       continue;
     }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "firmware_io/port.h"
 #include "firmware_io/s3g.h"
@@ -55,6 +56,9 @@ class Channel {
   bool heard_too_much() const { return heard_too_much_; }
   void forget_too_much() { heard_too_much_ = false; }
 
+  // True, once, when the answer to a query got lost: it may have told the end of the build.
+  bool take_missed() { return std::exchange(missed_, false); }
+
   // A build that was cancelled is reported once to whoever speaks next.
   void tolerate_cancelled(bool tolerate) { tolerate_cancelled_ = tolerate; }
 
@@ -80,6 +84,7 @@ class Channel {
   double reply_wait_s_;
   ReplyReader reader_;
   bool heard_too_much_ = false;
+  bool missed_ = false;
   bool tolerate_cancelled_ = false;
   bool may_abort_ = true;
 };

@@ -93,7 +93,7 @@ void Print::send(std::size_t index) {
   int rejected = 0;
   while (true) {
     obey();
-    if (channel_.now_s() - watched_at_s_ >= kWatch_s) watch();
+    if (channel_.take_missed() || channel_.now_s() - watched_at_s_ >= kWatch_s) watch();
     channel_.hear_strays();
     if (channel_.heard_too_much()) check_nothing_taken_twice();
     switch (channel_.try_action(action)) {
@@ -147,6 +147,7 @@ bool Print::was_taken(std::size_t index) {
   const std::uint8_t code = code_of((*actions_)[index]);
   const Statistics statistics = drained_statistics();
   if (code == kBuildStart) return statistics.state == BuildState::kRunning;
+  if (code != kBuildEnd) judge(statistics);
   // With an answer too many besides, the count proves nothing.
   if (started_ && !ended_ && !channel_.heard_too_much()) {
     if (code == kBuildEnd && statistics.state == BuildState::kFinished) return true;
@@ -234,6 +235,8 @@ void Print::cancel() {
 // Asks the printer how its build stands.
 void Print::watch() {
   watched_at_s_ = channel_.now_s();
+  // An empty buffer: the build start was executed.
+  if (started_ && !seen_running_) seen_running_ = channel_.free_buffer() == capacity_;
   const Statistics statistics = channel_.statistics();
   const std::uint8_t board_status = channel_.board_status();
   if ((board_status & kStatusHeatShutdown) != 0) {

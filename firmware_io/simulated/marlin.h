@@ -4,26 +4,20 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "firmware_io/simulated/firmware.h"
+#include "firmware_io/simulated/traits.h"
 
 namespace packmerger::simulated {
 
-struct MarlinTraits {
-  bool version_1_1 = false;  // a doubled line is answered with Resend; 2.1 says nothing
-  bool prompts = true;       // asks its user through the host
-  bool autoreport = true;    // temperatures of its own (M155)
-  bool rx_overflow = false;  // what does not fit the 128 bytes of its receive ring is lost
-};
-
-// Whether a command's first word is `word`: "G1 X2" is "G1", "G10" is not.
-bool is(const std::string& command, const std::string& word);
-
 class Marlin : public Firmware {
  public:
-  explicit Marlin(Pace pace, MarlinTraits traits = {}) : pace_(pace), traits_(traits) {}
+  explicit Marlin(Pace pace, MarlinTraits traits = {}) : pace_(pace), traits_(std::move(traits)) {
+    if (traits_.reports_unasked) report_every(1, 0);
+  }
 
   void receive(std::string_view bytes, double now_s) override;
   void advance(double now_s) override;
@@ -37,6 +31,17 @@ class Marlin : public Firmware {
  private:
   enum class Blocked { kNo, kUntil, kPlannerFull, kPlannerEmpty, kTool, kBed, kUser };
 
+  struct Queued {
+    std::string command;
+    std::optional<long> number;
+  };
+
+  static constexpr std::size_t kQueue = 4;
+  static constexpr double kIdle_s = 1;
+
+  static bool is(const std::string& command, const std::string& word);
+
+  void parse_emergency(char c, double now_s);
   void read_lines(double now_s);
   void take_line(std::string line, double now_s);
   bool take_number(std::string& line);
@@ -47,12 +52,15 @@ class Marlin : public Firmware {
   void execute(const std::string& command, double now_s);
   bool execute_move(const std::string& command, double now_s);
   void execute_report(const std::string& command, double now_s);
-  void report_by_itself(double now_s);
   void execute_pause(const std::string& command, double now_s);
   void block(Blocked why, double now_s, double until_s = kNever);
   bool still_blocked(double now_s);
   void keep_alive(double now_s);
+  void report_idle(double now_s);
+  void report_by_itself(double now_s);
+  void report_every(double seconds, double now_s);
   void finish();
+  std::string advanced_ok() const;
   void plan(double seconds, double now_s);
   void kill(const std::string& why);
   std::string temperatures(double now_s) const;
@@ -63,12 +71,15 @@ class Marlin : public Firmware {
 
   // the line
   std::string received_;
-  std::deque<std::string> queue_;
+  std::string emergency_line_;
+  std::deque<Queued> queue_;
   long last_number_ = 0;
+  double next_idle_s_ = 0;
 
   // the command being executed
   Blocked blocked_ = Blocked::kNo;
   bool executing_ = false;
+  std::optional<long> number_;  // of its line
   std::string reply_ = "ok";
   double blocked_until_s_ = 0;
   double next_busy_s_ = 0;

@@ -47,6 +47,10 @@ void Marlin::execute(const std::string& command, double now_s) {
   if (is(command, "M109")) block(Blocked::kTool, now_s, tool_.ready_s(now_s, pace_));
   if (is(command, "M190")) block(Blocked::kBed, now_s, bed_.ready_s(now_s, pace_));
   if (is(command, "M0") || is(command, "M1")) execute_pause(command, now_s);
+  if (const auto number = value(command, 'N'); number && is(command, "M110"))
+    last_number_ = std::lround(*number);
+  if (is(command, "M112")) kill("kill() called!");
+  if (is(command, "M410")) planned_ends_s_.clear();
   execute_report(command, now_s);
 }
 
@@ -97,10 +101,8 @@ bool Marlin::execute_move(const std::string& command, double now_s) {
 
 void Marlin::execute_report(const std::string& command, double now_s) {
   if (is(command, "M105")) reply_ = "ok" + temperatures(now_s);
-  if (is(command, "M155") && traits_.autoreport) {
-    report_every_s_ = value(command, 'S').value_or(0);
-    next_auto_s_ = report_every_s_ > 0 ? now_s + pace_.line_s(report_every_s_) : kNever;
-  }
+  if (is(command, "M155") && traits_.autoreport)
+    report_every(value(command, 'S').value_or(0), now_s);
   if (is(command, "M27")) say("Not SD printing");
   if (is(command, "M114")) {
     char text[128];
@@ -109,11 +111,11 @@ void Marlin::execute_report(const std::string& command, double now_s) {
     say(text);
   }
   if (is(command, "M115")) {
-    say(std::string("FIRMWARE_NAME:Marlin ") + (traits_.version_1_1 ? "1.1.9" : "2.1.2") +
+    say("FIRMWARE_NAME:Marlin " + traits_.version +
         " (simulated) PROTOCOL_VERSION:1.0 MACHINE_TYPE:PackMerger EXTRUDER_COUNT:1");
     say(std::string("Cap:AUTOREPORT_TEMP:") + (traits_.autoreport ? "1" : "0"));
     say(std::string("Cap:PROMPT_SUPPORT:") + (traits_.prompts ? "1" : "0"));
-    say("Cap:EMERGENCY_PARSER:0");
+    say(std::string("Cap:EMERGENCY_PARSER:") + (traits_.emergency_parser ? "1" : "0"));
   }
   const char letter = command.empty() ? '?' : command[0];
   if (letter != 'G' && letter != 'M' && letter != 'T')
@@ -124,7 +126,7 @@ void Marlin::execute_pause(const std::string& command, double now_s) {
   if (const auto seconds = value(command, 'S'))
     return block(Blocked::kUntil, now_s, now_s + pace_.machine_s(*seconds));
   const std::string text = command.size() > 3 ? command.substr(3) : "Click to resume";
-  say("echo:" + text + "\r");
+  say("echo:" + text + (traits_.crlf ? "\r" : ""));
   if (traits_.prompts) {
     say("//action:prompt_end");
     say("//action:prompt_begin " + text);

@@ -13,6 +13,7 @@ constexpr std::size_t kLongestPayload = 32;
 constexpr double kPacketTimeout_s = 0.2;
 constexpr double kNoiseInterval_s = 0.0005;
 constexpr double kHoming_s = 5;
+constexpr double kBoot_s = 2;
 constexpr double kButton_s = 5;  // someone presses the button after this
 
 std::string hex(const Bytes& bytes) {
@@ -29,7 +30,7 @@ std::string hex(const Bytes& bytes) {
 
 double Replicator::next_event_s() const {
   double next = std::min(stop_at_s_, noise_since_s_);
-  if (expect_ != Expect::kHeader)
+  if (expect_ != Expect::kHeader && traits_.packet_timeout)
     next = std::min(next, packet_since_s_ + pace_.line_s(kPacketTimeout_s));
   if (!queue_.empty() && !paused_) next = std::min(next, busy_until_s_);
   return next;
@@ -38,7 +39,8 @@ double Replicator::next_event_s() const {
 void Replicator::advance(double now_s) {
   now_s_ = now_s;
   if (now_s >= stop_at_s_) stop(now_s);
-  if (expect_ != Expect::kHeader && now_s >= packet_since_s_ + pace_.line_s(kPacketTimeout_s)) {
+  if (traits_.packet_timeout && expect_ != Expect::kHeader &&
+      now_s >= packet_since_s_ + pace_.line_s(kPacketTimeout_s)) {
     expect_ = Expect::kHeader;
     answer(0x8C);
   }
@@ -46,6 +48,10 @@ void Replicator::advance(double now_s) {
   constexpr std::size_t kEnough = 1024;
   while (noise_since_s_ <= now_s) {
     if (output_.size() < kEnough) answer(0x80);
+    if (!traits_.noise_endless) {
+      noise_since_s_ = kNever;
+      break;
+    }
     noise_since_s_ += pace_.line_s(kNoiseInterval_s);
     if (output_.size() >= kEnough) noise_since_s_ = std::max(noise_since_s_, now_s);
     if (noise_since_s_ == now_s) break;
@@ -99,6 +105,12 @@ void Replicator::overheat() {
   overheated_ = true;
 }
 
+// Someone chose a file at the panel: what the host sends is refused from now on.
+void Replicator::build_from_card() {
+  clear();
+  from_card_ = true;
+}
+
 void Replicator::power_cycle() {
   clear();
   state_ = kNone;
@@ -106,7 +118,8 @@ void Replicator::power_cycle() {
   build_name_.clear();
   expect_ = Expect::kHeader;
   noise_since_s_ = kNever;
-  tell_cancelled_ = overheated_ = false;
+  tell_cancelled_ = overheated_ = from_card_ = false;
+  booted_at_s_ = now_s_ + pace_.line_s(kBoot_s);
   output_.clear();
 }
 
@@ -116,7 +129,7 @@ void Replicator::wait(double seconds, double now_s) {
 
 void Replicator::execute(const Bytes& sent, double now_s) {
   executed_.push_back(hex(sent));
-  ++executed_count_;
+  if (traits_.counts_actions) ++executed_count_;
   Bytes action = sent;  // the firmware reads what it expects, however little was sent
   action.resize(std::max<std::size_t>(action.size(), kLongestPayload));
   switch (action[0]) {

@@ -9,12 +9,13 @@
 
 #include "firmware_io/simulated/bytes.h"
 #include "firmware_io/simulated/firmware.h"
+#include "firmware_io/simulated/traits.h"
 
 namespace packmerger::simulated {
 
 class Replicator : public Firmware {
  public:
-  explicit Replicator(Pace pace) : pace_(pace) {}
+  explicit Replicator(Pace pace, ReplicatorTraits traits = {}) : pace_(pace), traits_(traits) {}
 
   void receive(std::string_view bytes, double now_s) override;
   void advance(double now_s) override;
@@ -25,6 +26,7 @@ class Replicator : public Firmware {
   void press_pause();  // at its panel: pauses, or goes on
   void overheat();
   void power_cycle();
+  void build_from_card();
 
  private:
   enum State : std::uint8_t { kNone, kRunning, kFinished, kPausedState, kCancelled };
@@ -50,6 +52,7 @@ class Replicator : public Firmware {
   Heater& tool(std::size_t index) { return tools_[index % tools_.size()]; }
 
   Pace pace_;
+  ReplicatorTraits traits_;
 
   // the line
   Expect expect_ = Expect::kHeader;
@@ -61,6 +64,7 @@ class Replicator : public Firmware {
   // the machine
   std::deque<Bytes> queue_;
   std::size_t queued_bytes_ = 0;
+  double booted_at_s_ = 0;  // it is deaf until then
   double busy_until_s_ = 0;
   double now_s_ = 0;
   double stop_at_s_ = kNever;  // an abort takes effect a little later
@@ -68,6 +72,7 @@ class Replicator : public Firmware {
   bool waits_for_button_ = false;
   bool tell_cancelled_ = false;  // to whoever speaks next
   bool overheated_ = false;
+  bool from_card_ = false;
   State state_ = kNone;
   std::string build_name_;
   std::uint32_t executed_count_ = 0;  // since the build start

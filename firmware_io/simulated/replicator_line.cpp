@@ -24,10 +24,13 @@ std::uint8_t checksum(const Bytes& bytes) {
   return static_cast<std::uint8_t>(shift);
 }
 
+bool is_known(std::uint8_t action) { return action >= 0x83 && action <= 0x9E && action != 0x8A; }
+
 }  // namespace
 
 void Replicator::receive(std::string_view bytes, double now_s) {
   advance(now_s);
+  if (now_s < booted_at_s_) return;
   for (char c : bytes) {
     take_byte(static_cast<std::uint8_t>(c), now_s);
     advance(now_s);
@@ -82,6 +85,8 @@ void Replicator::take_packet(double now_s) {
 }
 
 void Replicator::take_action() {
+  if (from_card_) return answer(0x8A);
+  if (!traits_.unknown_accepted && !is_known(payload_[0])) return answer(0x85);
   if (queued_bytes_ + payload_.size() > kBufferBytes) return answer(0x82);
   queue_.push_back(payload_);
   queued_bytes_ += payload_.size();
@@ -89,10 +94,11 @@ void Replicator::take_action() {
 }
 
 void Replicator::take_query(double now_s) {
+  const bool hides_version = traits_.version_hidden && u16(payload_, 1) < 39;
   const auto free_bytes = static_cast<std::uint32_t>(kBufferBytes - queued_bytes_);
   switch (payload_[0]) {
     case 0x00:
-      return answer(0x81, little_endian(u16(payload_, 1) < 39 ? 0 : kVersion, 2));
+      return answer(0x81, little_endian(hides_version ? 0 : kVersion, 2));
     case 0x01:
       return answer(0x81);
     case 0x02:
@@ -121,7 +127,8 @@ void Replicator::take_query(double now_s) {
       if (payload_.size() > 1 && (payload_[1] & 2U) != 0) clear();
       return answer(0x81, {0});
     case 0x17:
-      return answer(0x81, {static_cast<std::uint8_t>(waits_for_button_ ? 0x10 : 0)});
+      return answer(0x81, {static_cast<std::uint8_t>((waits_for_button_ ? 0x10 : 0) |
+                                                     (from_card_ ? 0x08 : 0))});
     case 0x18:
       return answer(0x81, statistics());
     case 0x1B:

@@ -8,6 +8,8 @@
 #include <functional>
 #include <string>
 
+#include "firmware_io/simulated/traits.h"
+
 namespace packmerger {
 
 struct SimulatorOptions {
@@ -24,14 +26,15 @@ using ListeningAt = std::function<void(const std::string& path)>;
 // lower-case hex of its payload ("9b…"), and "abort" where the host ended the build. Returns once
 // stop is true. Throws Error{kCannotWrite} when the record cannot be written, Error{kInternal} when
 // there is no pseudo-terminal.
-void run_simulated_replicator(const SimulatorOptions& options, const ListeningAt& listening,
-                              const std::atomic<bool>& stop);
+void run_simulated_replicator(const SimulatorOptions& options,
+                              const simulated::ReplicatorTraits& traits,
+                              const ListeningAt& listening, const std::atomic<bool>& stop);
 
-// A RepRap with Marlin 2.1: line numbers and checksums, Resend, four queued commands, busy every
-// two seconds, temperatures, M115, prompts, emergency commands. Record: one command a line in
-// execution order, without line number and checksum ("G1 X10 F3000"), and "halt" where it was
-// killed. Returns and throws as above.
-void run_simulated_marlin(const SimulatorOptions& options, const ListeningAt& listening,
-                          const std::atomic<bool>& stop);
+// A RepRap with Marlin, as its traits say: line numbers and checksums, Resend, four queued
+// commands, busy every two seconds, temperatures, M115, prompts, emergency commands. Record: one
+// command a line in execution order, without line number and checksum ("G1 X10 F3000"), and "halt"
+// where it was killed. Returns and throws as above.
+void run_simulated_marlin(const SimulatorOptions& options, const simulated::MarlinTraits& traits,
+                          const ListeningAt& listening, const std::atomic<bool>& stop);
 
 }  // namespace packmerger

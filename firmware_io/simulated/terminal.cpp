@@ -162,15 +162,16 @@ Pace pace_of(const SimulatorOptions& options) {
 
 }  // namespace
 
-void run_simulated_replicator(const SimulatorOptions& options, const ListeningAt& listening,
-                              const std::atomic<bool>& stop) {
-  simulated::Replicator firmware(pace_of(options));
+void run_simulated_replicator(const SimulatorOptions& options,
+                              const simulated::ReplicatorTraits& traits,
+                              const ListeningAt& listening, const std::atomic<bool>& stop) {
+  simulated::Replicator firmware(pace_of(options), traits);
   run(firmware, options, listening, stop);
 }
 
-void run_simulated_marlin(const SimulatorOptions& options, const ListeningAt& listening,
-                          const std::atomic<bool>& stop) {
-  simulated::Marlin firmware(pace_of(options));
+void run_simulated_marlin(const SimulatorOptions& options, const simulated::MarlinTraits& traits,
+                          const ListeningAt& listening, const std::atomic<bool>& stop) {
+  simulated::Marlin firmware(pace_of(options), traits);
   run(firmware, options, listening, stop);
 }
 

@@ -1,10 +1,12 @@
 // packmerger simulate PROFILE: a printer that does not exist, on a pseudo-terminal.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +21,8 @@ struct Arguments {
   std::string profile;
   double speed = 1;
   std::string record;
+  std::string firmware;
+  std::vector<std::string> traits;
   bool json = false;
 };
 
@@ -26,6 +30,33 @@ double checked_speed(double speed) {
   if (std::isinf(speed) && speed > 0) return 0;
   if (std::isfinite(speed) && speed >= 0) return speed;
   throw Error(Fault::kUsage, "The speed must be 0 or more", "Give --speed 10, or --speed inf.");
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+template <typename Traits>
+Traits with_traits(Traits traits, const std::vector<std::string>& changes,
+                   const std::vector<std::string>& known) {
+  for (const std::string& change : changes)
+    if (!set_trait(traits, change))
+      throw Error(Fault::kUsage, "This firmware has no trait " + change,
+                  "Give --trait NAME=on or NAME=off, NAME being one of " + joined(known) + ".");
+  return traits;
+}
+
+// What the dialect usually has, unless another was asked for.
+std::string firmware_of(const Arguments& arguments, Dialect dialect) {
+  const std::vector<std::string> known = dialect == Dialect::kS3g
+                                             ? std::vector<std::string>{"sailfish"}
+                                             : std::vector<std::string>{"marlin-2.1", "marlin-1.1"};
+  if (arguments.firmware.empty()) return known[0];
+  if (std::find(known.begin(), known.end(), arguments.firmware) != known.end())
+    return arguments.firmware;
+  throw Error(Fault::kUsage,
+              "A machine of this profile cannot have the firmware " + arguments.firmware,
+              "Choose one of " + joined(known) + ".");
 }
 
 void simulate(const Arguments& arguments) {
@@ -44,10 +75,15 @@ void simulate(const Arguments& arguments) {
       fmt::print("{}\n", path);
     std::fflush(stdout);
   };
-  if (profile.dialect == Dialect::kS3g)
-    run_simulated_replicator(options, listening, interrupted());
-  else
-    run_simulated_marlin(options, listening, interrupted());
+  const std::string firmware = firmware_of(arguments, profile.dialect);
+  if (profile.dialect == Dialect::kS3g) {
+    const auto traits = with_traits(simulated::ReplicatorTraits(), arguments.traits,
+                                    simulated::replicator_trait_names());
+    return run_simulated_replicator(options, traits, listening, interrupted());
+  }
+  const auto usual = firmware == "marlin-1.1" ? simulated::marlin_1_1() : simulated::MarlinTraits();
+  const auto traits = with_traits(usual, arguments.traits, simulated::marlin_trait_names());
+  run_simulated_marlin(options, traits, listening, interrupted());
 }
 
 }  // namespace
@@ -63,6 +99,13 @@ void add_simulate(CLI::App& program) {
                    "How many times faster than a real printer; 0 or inf: no waiting at all")
       ->capture_default_str();
   verb->add_option("--record", arguments->record, "A file for every executed command, one a line");
+  verb->add_option("--firmware", arguments->firmware,
+                   "sailfish; or marlin-2.1 (the usual one of the dialect gcode) or marlin-1.1");
+  verb->add_option("--trait", arguments->traits,
+                   "One way in which the firmware differs, as NAME=on or NAME=off: " +
+                       joined(simulated::marlin_trait_names()) + "; for sailfish " +
+                       joined(simulated::replicator_trait_names()))
+      ->allow_extra_args(false);
   verb->add_flag("--json", arguments->json, "The first line as JSON");
   verb->callback([arguments] { simulate(*arguments); });
 }

@@ -58,6 +58,23 @@ def run(*arguments, timeout=240, limited=False, cwd=None, temporary=None, prefix
         return Result(child.returncode, *texts, time.monotonic() - start, usage.ru_maxrss * 1024)
 
 
+class Background:
+    """A program of ours that runs beside the test."""
+
+    def __init__(self, test, name, *arguments, log):
+        self.log = open(log, "w+b")
+        self.child = subprocess.Popen([binary(name), *map(str, arguments)], stdin=subprocess.DEVNULL,
+                                      stdout=subprocess.PIPE, stderr=self.log, text=True)
+        test.addCleanup(self.end)
+
+    def end(self):
+        self.child.terminate()
+        code = self.child.wait(timeout=60)
+        self.child.stdout.close()
+        self.log.close()
+        return code
+
+
 def bunny(folder):
     """Writes bunny.obj into folder; None where node or its npm package is missing."""
     out = pathlib.Path(folder) / "bunny.obj"

@@ -22,23 +22,6 @@ PATIENCE_S = 400
 BOX = ("min_x", "min_y", "min_z", "max_x", "max_y", "max_z")
 
 
-class Background:
-    """A program of ours that runs beside the test."""
-
-    def __init__(self, test, name, *arguments, log):
-        self.log = open(log, "w+b")
-        self.child = subprocess.Popen([program.binary(name), *map(str, arguments)], stdin=subprocess.DEVNULL,
-                                      stdout=subprocess.PIPE, stderr=self.log, text=True)
-        test.addCleanup(self.end)
-
-    def end(self):
-        self.child.terminate()
-        code = self.child.wait(timeout=60)
-        self.child.stdout.close()
-        self.log.close()
-        return code
-
-
 class Path(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="packmerger-path-")
@@ -50,8 +33,8 @@ class Path(unittest.TestCase):
     def simulated(self, profile):
         """A simulated printer's port and the file of what it executes."""
         record = self.folder / f"{profile}.txt"
-        printer = Background(self, "packmerger", "simulate", profile, "--speed", "inf", "--record", record,
-                             log=self.folder / "simulator.log")
+        printer = program.Background(self, "packmerger", "simulate", profile, "--speed", "inf", "--record", record,
+                                     log=self.folder / "simulator.log")
         return printer.child.stdout.readline().strip(), record
 
     def wait_for(self, holds):
@@ -81,7 +64,7 @@ approve = "ask"
 set = ["tabu_patience=1", "tabu_samples=2"]
 """)
         (self.folder / "drop").mkdir()
-        daemon = Background(self, "packmergerd", "--config", config, log=self.folder / "daemon.log")
+        daemon = program.Background(self, "packmergerd", "--config", config, log=self.folder / "daemon.log")
         socket = ("--socket", self.folder / "state" / "packmergerd.sock")
         self.wait_for(lambda: program.run("printers", "list", *socket).code == 0)
         (self.folder / "drop" / "ball.stl").write_bytes(self.ball.read_bytes())

@@ -1,6 +1,7 @@
 #include "sim/faulty_port.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace packmerger::test {
 
@@ -35,15 +36,24 @@ void FaultyPort::pass(std::string bytes, std::deque<Chunk>& queue) {
 }
 
 void FaultyPort::step() {
+  constexpr double kDay_s = 86400;
+  if (now_s_ > kDay_s)
+    throw std::runtime_error("The link has hung for a day; it sent last: " +
+                             sent.substr(sent.size() - std::min<std::size_t>(sent.size(), 200)));
   if (on_step) on_step(written_);
-  if (written_ >= end_after) throw Error(Fault::kIo, "The channel has ended", "Plug it in.");
+  if (unplugged_ || written_ >= end_after)
+    throw Error(Fault::kIo, "The channel has ended", "Plug it in.");
+  deliver();
+  if (std::string output = firmware_.take_output(); !output.empty() && !lose_answers)
+    pass(std::move(output), to_host_);
+}
+
+void FaultyPort::deliver() {
   while (!to_printer_.empty() && to_printer_.front().due_s <= now_s_) {
     firmware_.receive(to_printer_.front().bytes, now_s_);
     to_printer_.pop_front();
   }
   firmware_.advance(now_s_);
-  if (std::string output = firmware_.take_output(); !output.empty())
-    pass(std::move(output), to_host_);
 }
 
 std::size_t FaultyPort::read(char* data, std::size_t size, double timeout_s) {
@@ -69,10 +79,26 @@ std::size_t FaultyPort::read(char* data, std::size_t size, double timeout_s) {
 std::size_t FaultyPort::write(std::string_view bytes, double) {
   step();
   ++written_;
+  unplugged_ = unplugged_ || happens(rates_.unplug);
+  if (!had_mishap_ && happens(rates_.mishap)) {
+    had_mishap_ = true;
+    on_mishap();
+  }
   sent += bytes;
   pass(std::string(bytes), to_printer_);
   step();
   return bytes.size();
+}
+
+void FaultyPort::leave_alone(double seconds) {
+  const double end_s = now_s_ + seconds;
+  while (now_s_ < end_s) {
+    deliver();
+    firmware_.take_output();
+    double next_s = std::min(end_s, firmware_.next_event_s());
+    if (!to_printer_.empty()) next_s = std::min(next_s, to_printer_.front().due_s);
+    now_s_ = std::max(next_s, now_s_ + 1e-3);
+  }
 }
 
 const std::vector<std::string>& FaultyPort::executed() {

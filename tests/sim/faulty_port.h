@@ -26,6 +26,9 @@ struct FaultRates {
   double delay = 0;  // by up to longest_delay_s
   double split = 0;
   double longest_delay_s = 0.3;
+  // Of one chunk that is written; each happens once at most.
+  double mishap = 0;  // on_mishap is called
+  double unplug = 0;  // the channel ends
 };
 
 class FaultyPort : public Port {
@@ -40,6 +43,10 @@ class FaultyPort : public Port {
 
   // Called before anything passes, with the number of chunks written so far.
   std::function<void(std::size_t written)> on_step;
+  // What becomes of the machine at a mishap: a reset, a halt.
+  std::function<void()> on_mishap;
+  // While true, what the firmware says is lost.
+  bool lose_answers = false;
   // The channel ends once this many chunks were written.
   std::size_t end_after = static_cast<std::size_t>(-1);
   // Everything that was written, before any fault.
@@ -47,7 +54,11 @@ class FaultyPort : public Port {
 
   // All that the firmware executed so far.
   const std::vector<std::string>& executed();
+  // The machine goes on for so long with nobody at the other end.
+  void leave_alone(double seconds);
   std::size_t faults() const { return faults_; }
+  bool had_mishap() const { return had_mishap_; }
+  bool was_unplugged() const { return unplugged_; }
   std::size_t chunks() const { return written_; }
 
  private:
@@ -57,6 +68,7 @@ class FaultyPort : public Port {
   };
 
   void step();
+  void deliver();
   void pass(std::string bytes, std::deque<Chunk>& queue);
   std::string damaged(std::string bytes);
   bool happens(double rate) { return rate > 0 && random_.unit() < rate; }
@@ -67,6 +79,8 @@ class FaultyPort : public Port {
   double now_s_ = 0;
   std::size_t written_ = 0;
   std::size_t faults_ = 0;
+  bool had_mishap_ = false;
+  bool unplugged_ = false;
   std::deque<Chunk> to_printer_;
   std::deque<Chunk> to_host_;
   std::vector<std::string> executed_;

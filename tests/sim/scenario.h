@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -45,9 +46,10 @@ inline std::size_t count(const std::vector<std::string>& list, const std::string
 // Those of `executed` that belong to the program.
 inline std::vector<std::string> only(const std::vector<std::string>& executed,
                                      const std::vector<std::string>& program) {
+  const std::unordered_set<std::string> known(program.begin(), program.end());
   std::vector<std::string> kept;
   for (const std::string& command : executed)
-    if (count(program, command) > 0) kept.push_back(command);
+    if (known.count(command) > 0) kept.push_back(command);
   return kept;
 }
 

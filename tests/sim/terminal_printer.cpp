@@ -35,9 +35,9 @@ Printer::Printer(Machine machine, double speed) {
   thread_ = std::thread([this, machine, promise = std::move(path)]() mutable {
     const auto listening = [&](const std::string& at) { promise.set_value(at); };
     if (machine == Machine::kReplicator)
-      run_simulated_replicator(options_, listening, stop_);
+      run_simulated_replicator(options_, {}, listening, stop_);
     else
-      run_simulated_marlin(options_, listening, stop_);
+      run_simulated_marlin(options_, {}, listening, stop_);
   });
   path_ = ready.get();
 }

@@ -56,7 +56,7 @@ TEST(GcodeCodec, RefusesWhatTheWireCannotCarry) {
 }
 
 TEST(GcodeCodec, LongestAcceptedLineFitsMarlin) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const auto text = *rc::gen::container<std::string>(rc::gen::inRange<char>('A', 'Z'));
     const std::string program = "G1 X" + text;
     const std::string framed = numbered_gcode(1, program);
@@ -67,7 +67,7 @@ TEST(GcodeCodec, LongestAcceptedLineFitsMarlin) {
       refused = true;
     }
     RC_ASSERT(refused == (framed.size() - 1 > 95 || program.find("M110") != std::string::npos));
-  });
+  }));
 }
 
 GcodeReplyKind kind(std::string_view line) { return read_gcode_reply(line).kind; }
@@ -114,7 +114,7 @@ TEST(S3gCodec, FramesAsTheFirmwareExpects) {
 }
 
 TEST(S3gCodec, ReadsRepliesInPiecesAndBetweenNoise) {
-  rc::check([](const std::vector<std::string>& payloads) {
+  EXPECT_TRUE(rc::check([](const std::vector<std::string>& payloads) {
     std::string bytes;
     std::vector<std::string> sent;
     for (const std::string& payload : payloads) {
@@ -130,7 +130,7 @@ TEST(S3gCodec, ReadsRepliesInPiecesAndBetweenNoise) {
         if (reply->intact) got.push_back(reply->payload);
     }
     RC_ASSERT(got == sent);
-  });
+  }));
 }
 
 TEST(S3gCodec, SplitsAProgram) {
@@ -154,7 +154,7 @@ TEST(S3gCodec, RefusesWhatTheFirmwareWouldChokeOn) {
 }
 
 TEST(S3gCodec, AnyBytesAreSplitOrRefused) {
-  rc::check([](const std::string& bytes) {
+  EXPECT_TRUE(rc::check([](const std::string& bytes) {
     try {
       std::size_t total = 0;
       for (std::string_view action : s3g::split_actions(bytes)) total += action.size();
@@ -162,7 +162,7 @@ TEST(S3gCodec, AnyBytesAreSplitOrRefused) {
     } catch (const Error& error) {
       RC_ASSERT(error.fault() == Fault::kBadInput);
     }
-  });
+  }));
 }
 
 TEST(S3gCodec, CutsTheBuildName) {

@@ -162,6 +162,68 @@ TEST(Marlin, OwnCardIsBusy) {
   EXPECT_EQ(failure->fault(), Fault::kBusy);
 }
 
+// A printer that was told to report its temperatures goes on with it whatever else it says.
+class Thermometer : public simulated::Firmware {
+ public:
+  void receive(std::string_view, double) override {}
+  void advance(double now_s) override {
+    if (now_s < next_s_) return;
+    output_ += " T:21.00 /0.00 B:21.00 /0.00 @:0 B@:0\n";
+    next_s_ = now_s + 1;
+  }
+  double next_event_s() const override { return next_s_; }
+
+ private:
+  double next_s_ = 0;
+};
+
+TEST(Marlin, ReportsAloneAreNoAnswer) {
+  Thermometer firmware;
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, "G28\n", control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kUnavailable);
+  EXPECT_LT(port.now_s(), 60);
+}
+
+// Reports of the temperature go on when the ok of the heating command got lost.
+TEST(Marlin, ALostOkWhileHeatingIsNoticedInSpiteOfReports) {
+  MarlinTraits traits;
+  traits.reports_unasked = true;
+  Marlin firmware(Pace{1, true}, traits);
+  FaultyPort port(firmware);
+  // M115, M27 and M110 take four chunks; then come M104 and M190.
+  double sent_at_s = simulated::kNever;
+  port.on_step = [&](std::size_t written) {
+    if (written == 6) sent_at_s = std::min(sent_at_s, port.now_s());
+    port.lose_answers = written == 6 && port.now_s() < sent_at_s + 0.1;
+  };
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(20)), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(only(port.executed(), gcode_program(20)), gcode_program(20));
+  EXPECT_LT(port.now_s(), 60);
+}
+
+TEST(Marlin, AnEarlyResetIsNoticedEvenWhenItsFirstWordsAreLost) {
+  Marlin firmware(Pace{1, true});
+  FaultyPort port(firmware);
+  bool done = false;
+  port.on_step = [&](std::size_t written) {
+    if (written == 10 && !std::exchange(done, true)) {
+      firmware.reset();
+      firmware.take_output();
+    }
+  };
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(20)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("it was probably reset"));
+  const auto executed = only(port.executed(), gcode_program(20));
+  EXPECT_EQ(count(executed, "M104 S199"), 1U) << "nothing is executed again";
+}
+
 TEST(Links, NobodyThere) {
   for (const bool gcode : {true, false}) {
     Parrot firmware([](const std::string&) { return std::string(); });
@@ -268,6 +330,24 @@ TEST(Replicator, Overheated) {
 
 TEST(Replicator, PowerCut) {
   expect_cause([](Replicator& machine) { machine.power_cycle(); }, "reset");
+}
+
+// Before its build was ever seen running, the state "no build" could be the old one.
+TEST(Replicator, PowerCutInTheFirstSecond) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  bool done = false;
+  port.on_step = [&](std::size_t) {
+    if (port.now_s() > 0.2 && !std::exchange(done, true)) firmware.power_cycle();
+  };
+  PrintControl control;
+  const X3gProgram program = x3g_program(100);
+  const auto failure = print(port, false, program.bytes, control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("reset"));
+  const auto executed = port.executed();
+  ASSERT_LT(executed.size(), program.actions.size());
+  EXPECT_TRUE(std::equal(executed.begin(), executed.end(), program.actions.begin()));
 }
 
 TEST(Replicator, CancelWhileHeatingActsWithinASecond) {

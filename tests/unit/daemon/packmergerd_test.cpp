@@ -48,7 +48,7 @@ class SimulatedMarlin {
     options.record = record;
     thread_ = std::thread([this, options, promise = std::move(promise)]() mutable {
       run_simulated_marlin(
-          options, [&](const std::string& path) { promise.set_value(path); }, stop_);
+          options, {}, [&](const std::string& path) { promise.set_value(path); }, stop_);
     });
     port_ = listening.get();
   }

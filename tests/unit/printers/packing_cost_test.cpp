@@ -65,7 +65,7 @@ TEST(PackingCost, RefusesAProfileItWouldDivideByZeroWith) {
 }
 
 TEST(PackingCost, LowerBoundHoldsForEveryTrayThatHoldsMore) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const auto number = [](int high) { return *rc::gen::inRange(0, high) * 0.31; };
     const auto profiles = {fixtures::plain_polyjet(), fixtures::plain_deposition(),
                            fixtures::plain_toolpath()};
@@ -82,7 +82,7 @@ TEST(PackingCost, LowerBoundHoldsForEveryTrayThatHoldsMore) {
         RC_ASSERT(cost.lower_bound(few) <= cost.evaluate(more));
         RC_ASSERT(cost.lower_bound(few) <= cost.lower_bound(more));
       }
-  });
+  }));
 }
 
 }  // namespace

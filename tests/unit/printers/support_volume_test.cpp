@@ -128,7 +128,7 @@ TEST(SupportVolume, SameBytesOnAnyNumberOfThreads) {
 }
 
 TEST(SupportVolume, ScalesWithTheCubeOfSizeAndIgnoresPlace) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const double scale = *rc::gen::inRange(1, 50) * 0.13;
     const Vec3 by(*rc::gen::inRange(-500, 500) * 0.37, *rc::gen::inRange(-500, 500) * 0.41, 0);
     const double turn = *rc::gen::inRange(0, 360);
@@ -141,11 +141,11 @@ TEST(SupportVolume, ScalesWithTheCubeOfSizeAndIgnoresPlace) {
       larger.set_point(vertex, larger.point(vertex) * scale);
     const double expected = coarse_support({model}, 1 << 14) * scale * scale * scale;
     RC_ASSERT(std::abs(coarse_support({larger}, 1 << 14) - expected) <= 5e-3 * expected);
-  });
+  }));
 }
 
 TEST(SupportVolume, PartsApartAddUp) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     std::vector<Mesh> parts;
     double sum = 0;
     const int count = *rc::gen::inRange(1, 6);
@@ -156,12 +156,12 @@ TEST(SupportVolume, PartsApartAddUp) {
       sum += coarse_support({parts.back()}, 1 << 12);
     }
     RC_ASSERT(std::abs(coarse_support(parts, 1 << 14) - sum) <= 2e-2 * sum);
-  });
+  }));
 }
 
 // Whole-numbered boxes, counted column by column of unit squares.
 TEST(SupportVolume, AgreesWithCountingOverRandomBoxes) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     constexpr int kSide = 8;
     constexpr int kHeight = 12;
     std::array<std::array<std::array<bool, kHeight>, kSide>, kSide> matter{};
@@ -192,7 +192,7 @@ TEST(SupportVolume, AgreesWithCountingOverRandomBoxes) {
         for (int z = 0; z < top; ++z) empty += column[z] ? 0 : 1;
       }
     RC_ASSERT(std::abs(coarse_support(parts, 1 << 14) - empty) <= 1e-6 * (1 + empty));
-  });
+  }));
 }
 
 TEST(SupportVolume, RealBunny) {

@@ -1,0 +1,78 @@
+#include "firmware_io/simulated/traits.h"
+
+#include <utility>
+
+namespace packmerger::simulated {
+
+namespace {
+
+template <typename Traits>
+using Names = std::vector<std::pair<std::string_view, bool Traits::*>>;
+
+const Names<MarlinTraits>& names_of(const MarlinTraits&) {
+  using T = MarlinTraits;
+  static const Names<T> names = {{"doubled_silent", &T::doubled_silent},
+                                 {"rx_overflow", &T::rx_overflow},
+                                 {"emergency_parser", &T::emergency_parser},
+                                 {"prompts", &T::prompts},
+                                 {"busy", &T::busy},
+                                 {"crlf", &T::crlf},
+                                 {"m110_anywhere", &T::m110_anywhere},
+                                 {"advanced_ok", &T::advanced_ok},
+                                 {"idle_wait", &T::idle_wait},
+                                 {"autoreport", &T::autoreport},
+                                 {"reports_unasked", &T::reports_unasked},
+                                 {"resend_error", &T::resend_error},
+                                 {"resend_ok", &T::resend_ok},
+                                 {"resend_short", &T::resend_short}};
+  return names;
+}
+
+const Names<ReplicatorTraits>& names_of(const ReplicatorTraits&) {
+  using T = ReplicatorTraits;
+  static const Names<T> names = {{"noise_endless", &T::noise_endless},
+                                 {"unknown_accepted", &T::unknown_accepted},
+                                 {"version_hidden", &T::version_hidden},
+                                 {"counts_actions", &T::counts_actions},
+                                 {"packet_timeout", &T::packet_timeout}};
+  return names;
+}
+
+template <typename Traits>
+bool set(Traits& traits, std::string_view text) {
+  const std::size_t equals = text.find('=');
+  const std::string_view value = equals == std::string_view::npos ? "on" : text.substr(equals + 1);
+  if (value != "on" && value != "off") return false;
+  for (const auto& [name, member] : names_of(traits)) {
+    if (name != text.substr(0, equals)) continue;
+    traits.*member = value == "on";
+    return true;
+  }
+  return false;
+}
+
+template <typename Traits>
+std::vector<std::string> listed() {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : names_of(Traits())) names.emplace_back(name);
+  return names;
+}
+
+}  // namespace
+
+MarlinTraits marlin_1_1() {
+  MarlinTraits traits;
+  traits.version = "1.1.9";
+  traits.doubled_silent = false;
+  traits.rx_overflow = true;
+  traits.emergency_parser = false;
+  traits.prompts = false;
+  return traits;
+}
+
+bool set_trait(MarlinTraits& traits, std::string_view text) { return set(traits, text); }
+bool set_trait(ReplicatorTraits& traits, std::string_view text) { return set(traits, text); }
+std::vector<std::string> marlin_trait_names() { return listed<MarlinTraits>(); }
+std::vector<std::string> replicator_trait_names() { return listed<ReplicatorTraits>(); }
+
+}  // namespace packmerger::simulated

@@ -1,0 +1,49 @@
+// Traps that firmwares set, each by name and each one of its own, so that a test can set one alone.
+// docs/PROTOCOLS lists what was seen of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace packmerger::simulated {
+
+// As given here: Marlin 2.1 with its emergency parser and host prompts.
+struct MarlinTraits {
+  std::string version = "2.1.2";
+  bool doubled_silent = true;    // a line it has already gets no answer; otherwise Resend
+  bool rx_overflow = false;      // what does not fit its receive ring (128 bytes) is lost
+  bool emergency_parser = true;  // M108, M112, M410 and M876 act while they are received
+  bool prompts = true;           // asks its user through the host
+  bool busy = true;              // says "busy" every two seconds while a command blocks
+  bool crlf = true;              // some lines end "\r\n"
+  bool m110_anywhere = true;     // a numbered line with "M110" anywhere sets the line count
+  bool advanced_ok = false;      // "ok N2 P14 B3"
+  bool idle_wait = false;        // says "wait" every second while it has nothing to do
+  bool autoreport = true;        // tells its temperatures of its own once asked to (M155)
+  bool reports_unasked = false;  // does so every second from its start
+  bool resend_error = true;      // an "Error:" line before "Resend"
+  bool resend_ok = true;         // an "ok" behind it
+  bool resend_short = false;     // "rs N3" for "Resend: 3"
+};
+
+MarlinTraits marlin_1_1();
+
+// As given here: Sailfish 7.8.
+struct ReplicatorTraits {
+  bool noise_endless = true;     // a stray byte is answered 0x80 until a packet comes; else once
+  bool unknown_accepted = true;  // an unknown action is answered 0x81, then the build is lost
+  bool version_hidden = true;    // from hosts below version 39
+  bool counts_actions = true;    // build statistics tell how many were executed
+  bool packet_timeout = true;    // a packet cut short is answered 0x8C after 0.2 s
+};
+
+// "rx_overflow", "rx_overflow=on" or "rx_overflow=off". False where there is no such trait.
+bool set_trait(MarlinTraits& traits, std::string_view text);
+bool set_trait(ReplicatorTraits& traits, std::string_view text);
+
+// For help texts.
+std::vector<std::string> marlin_trait_names();
+std::vector<std::string> replicator_trait_names();
+
+}  // namespace packmerger::simulated
