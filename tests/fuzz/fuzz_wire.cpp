@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "firmware_io/gcode.h"
 #include "firmware_io/s3g.h"
+#include "firmware_io/usb_printer.h"
 
 namespace {
 
@@ -37,7 +38,7 @@ void refused_or_read(const Read& read) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data + 1), size - 1);
-  switch (data[0] % 4) {
+  switch (data[0] % 5) {
     case 0:
       read_gcode_reply(bytes);
       break;
@@ -46,6 +47,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     case 2:
       refused_or_read([&] { check_gcode_commands(gcode_commands(bytes)); });
+      break;
+    case 3:
+      for (const char c : read_usb_printer_id(bytes).model)
+        if (c < ' ' || c > '~') std::abort();
       break;
     default:
       refused_or_read([&] {
