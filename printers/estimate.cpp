@@ -11,29 +11,42 @@ namespace {
 
 TrayEstimate estimate_tray(const Profile& profile, const Tray& tray, const Progress& progress) {
   if (profile.technology == Technology::kPolyjet) return polyjet_tray(profile, tray, progress);
-  if (profile.fdm.time == FdmTime::kDeposition) return fdm_deposition_tray(profile, tray, progress);
-  return fdm_toolpath_tray(profile, tray, progress);
+  TrayEstimate fdm = profile.fdm.time == FdmTime::kDeposition
+                         ? fdm_deposition_tray(profile, tray, progress)
+                         : fdm_toolpath_tray(profile, tray, progress);
+  fdm.turned_time_s = fdm.time_s;
+  return fdm;
 }
 
 }  // namespace
 
 Estimate estimate(const Profile& profile, const std::vector<Tray>& trays, const Assembly& assembly,
                   const Progress& progress) {
+  return estimate_both_turns(profile, trays, assembly, progress).straight;
+}
+
+BothTurns estimate_both_turns(const Profile& profile, const std::vector<Tray>& trays,
+                              const Assembly& assembly, const Progress& progress) {
   require_positive(profile, profile.layer_mm, "layer_mm");
   Estimate sum;
+  double turned_time_s = 0;
   sum.source = EstimateSource::kModel;
   sum.trays = static_cast<int>(trays.size());
   for (const Tray& tray : trays) {
     progress.check();
     const TrayEstimate one = estimate_tray(profile, tray, progress);
     sum.time_s += one.time_s;
+    turned_time_s += one.turned_time_s;
     sum.model_mm3 += one.model_mm3;
     sum.model_g += one.model_g;
     sum.support_mm3 += one.support_mm3;
     sum.support_g += one.support_g;
   }
-  price(sum, profile, assembly);
-  return sum;
+  BothTurns both{sum, sum};
+  both.turned.time_s = turned_time_s;
+  price(both.straight, profile, assembly);
+  price(both.turned, profile, assembly);
+  return both;
 }
 
 double price_of(const CostSettings& rates, double model_g, double support_g, double time_s,

@@ -1,5 +1,5 @@
 // FDM by deposition rate: material at a fixed rate, and a fixed time for each layer.
-#include "printers/slice_layers.h"
+#include "printers/layers.h"
 #include "printers/support_volume.h"
 #include "printers/tray_estimate.h"
 

@@ -134,7 +134,7 @@ TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray, const P
   TrayEstimate result;
   result.time_s = settings.start_s;
   double path_mm = 0;
-  const std::vector<Layer> layers = slice_layers(parts, profile.layer_mm, angle);
+  const std::vector<Layer> layers = slice_layers(parts, profile.layer_mm);
   const std::vector<double> exposed =
       exposed_areas(settings, profile.layer_mm, parts, static_cast<int>(layers.size()));
   for (std::size_t i = 0; i < layers.size(); ++i) {

@@ -4,8 +4,8 @@
 
 #include "printers/estimate.h"
 #include "printers/fdm_toolpath.h"
+#include "printers/layers.h"
 #include "printers/polyjet.h"
-#include "printers/slice_layers.h"
 #include "printers/tray_estimate.h"
 
 namespace packmerger {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "printers/slice_layers.h"
+#include "printers/layer_extents.h"
 #include "printers/support_volume.h"
 #include "printers/tray_estimate.h"
 
@@ -26,10 +26,11 @@ TrayEstimate polyjet_tray(const Profile& profile, const Tray& tray, const Progre
   const std::vector<const Mesh*> parts = pointers(tray);
 
   TrayEstimate result;
-  result.time_s = settings.start_s;
-  for (const Layer& layer : slice_layers(parts, profile.layer_mm, angle)) {
-    const Vec2 size = layer.extent.isEmpty() ? Vec2(0, 0) : Vec2(layer.extent.sizes());
+  result.time_s = result.turned_time_s = settings.start_s;
+  for (const auto& extent : layer_extents(parts, profile.layer_mm, angle)) {
+    const Vec2 size = extent.isEmpty() ? Vec2(0, 0) : Vec2(extent.sizes());
     result.time_s += polyjet_layer_s(settings, size.x(), size.y());
+    result.turned_time_s += polyjet_layer_s(settings, size.y(), size.x());
   }
   progress.check();
   result.support_mm3 = support_volume_mm3(parts, angle);

@@ -18,18 +18,11 @@ struct Layer {
   std::vector<Contour> contours;
   double area_mm2 = 0;      // of matter: the contours' sum
   double perimeter_mm = 0;  // outlines and holes
-  // The axis-aligned box of matter and support in this layer (support to a cell of a grid of some
-  // 65,000). Empty (isEmpty()) where the layer holds neither.
-  Eigen::AlignedBox2d extent;
 };
-
-// ceil(height / layer), forgiving rounding: 56 mm at 0.2 mm is 280 layers, not 281.
-int layer_count(double height_mm, double layer_mm);
 
 // Layer k is cut at (k + 1/2) · layer_mm above the plate, k from 0 to layer_count(top) − 1.
 // parts: closed meshes in tray coordinates, mm. Overlapping parts are counted twice.
 // Same result on any number of threads.
-std::vector<Layer> slice_layers(const std::vector<const Mesh*>& parts, double layer_mm,
-                                double support_angle);
+std::vector<Layer> slice_layers(const std::vector<const Mesh*>& parts, double layer_mm);
 
 }  // namespace packmerger

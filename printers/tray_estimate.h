@@ -11,7 +11,8 @@ namespace packmerger {
 
 struct TrayEstimate {
   double time_s = 0;
-  double model_mm3 = 0;  // as deposited
+  double turned_time_s = 0;  // the tray turned by a quarter about the vertical
+  double model_mm3 = 0;      // as deposited
   double model_g = 0;
   double support_mm3 = 0;  // V_s
   double support_g = 0;
@@ -22,7 +23,7 @@ TrayEstimate fdm_deposition_tray(const Profile& profile, const Tray& tray,
                                  const Progress& progress);
 TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray, const Progress& progress);
 
-// The parts as slice_layers() and support_measure() take them.
+// The parts as slice_layers(), layer_extents() and support_measure() take them.
 std::vector<const Mesh*> pointers(const Tray& tray);
 
 // Sum of the parts' volumes and the height of the tallest.

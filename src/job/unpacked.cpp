@@ -15,23 +15,25 @@ namespace {
 
 constexpr double kSlack = 1e-9;  // of a model exactly as large as the tray, mm
 
-// The six faces that can be down, each with and without a quarter turn about the vertical. Exact
-// signed permutations, so that nothing is lost by turning.
+// The six faces that can be down. Exact signed permutations, so that nothing is lost by turning.
 std::vector<Mat3> ways_up() {
   std::vector<Mat3> ways;
   for (const int axis : {2, 0, 1})  // as the file stands comes first, and wins ties
-    for (const double sign : {1.0, -1.0})
-      for (const bool turned : {false, true}) {
-        Mat3 way = Mat3::Zero();
-        const int x = (axis + (turned ? 2 : 1)) % 3;
-        const int y = (axis + (turned ? 1 : 2)) % 3;
-        way(2, axis) = sign;
-        way(0, x) = 1;
-        way(1, y) = 1;
-        if (way.determinant() < 0) way(1, y) = -1;
-        ways.push_back(way);
-      }
+    for (const double sign : {1.0, -1.0}) {
+      Mat3 way = Mat3::Zero();
+      way(2, axis) = sign;
+      way(0, (axis + 1) % 3) = 1;
+      way(1, (axis + 2) % 3) = sign;
+      ways.push_back(way);
+    }
   return ways;
+}
+
+Mat3 quarter_turned(const Mat3& way) {
+  Mat3 turned = way;
+  turned.row(0) = -way.row(1);
+  turned.row(1) = way.row(0);
+  return turned;
 }
 
 Box3 turned_box(const Mesh& mesh, const Mat3& way) {
@@ -90,18 +92,22 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
 std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Progress& progress) {
   const std::vector<Mat3> ways = ways_up();
   using Rank = std::tuple<double, double, std::size_t>;  // cost, time, index
-  std::vector<Rank> ranks(ways.size(), {std::numeric_limits<double>::infinity(), 0, 0});
+  std::vector<Rank> ranks(2 * ways.size(), {std::numeric_limits<double>::infinity(), 0, 0});
   parallel_tasks(ways.size(), [&](std::size_t i) {
     const Box3 box = turned_box(model, ways[i]);
-    if (!fits(box.sizes(), profile.build())) return;
+    const Vec3 size = box.sizes();
+    const bool fits_straight = fits(size, profile.build());
+    const bool fits_turned = fits(Vec3(size.y(), size.x(), size.z()), profile.build());
+    if (!fits_straight && !fits_turned) return;
     Tray tray;
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
-    const Estimate one = estimate(profile, {tray}, Assembly{}, progress);
-    ranks[i] = {one.cost, one.time_s, i};
+    const BothTurns both = estimate_both_turns(profile, {tray}, Assembly{}, progress);
+    if (fits_straight) ranks[2 * i] = {both.straight.cost, both.straight.time_s, 2 * i};
+    if (fits_turned) ranks[2 * i + 1] = {both.turned.cost, both.turned.time_s, 2 * i + 1};
   });
-  const Rank best = *std::min_element(ranks.begin(), ranks.end());
-  if (std::isinf(std::get<0>(best))) return std::nullopt;
-  return ways[std::get<2>(best)];
+  const auto [cost, time_s, index] = *std::min_element(ranks.begin(), ranks.end());
+  if (std::isinf(cost)) return std::nullopt;
+  return index % 2 == 0 ? ways[index / 2] : quarter_turned(ways[index / 2]);
 }
 
 }  // namespace

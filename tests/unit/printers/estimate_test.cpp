@@ -206,6 +206,22 @@ TEST(Estimate, TraysAddUp) {
   }
 }
 
+TEST(Estimate, BothTurnsAreThoseOfATurnedTray) {
+  Pose quarter = Pose::Identity();
+  quarter.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  for (const Profile& profile : {fixtures::plain_polyjet(), fixtures::plain_toolpath()}) {
+    const Mesh part = box(Vec3(5, 5, 4), Vec3(25, 70, 14));
+    Mesh turned = transformed(part, quarter);
+    turned = printed::moved(turned, Vec3(80, 0, 0));
+    const BothTurns both = estimate_both_turns(profile, {tray_of({part})}, Assembly{}, Progress());
+    EXPECT_EQ(both.straight.time_s, of(profile, {part}).time_s);
+    const Estimate told = both.turned, known = of(profile, {turned});
+    EXPECT_NEAR(told.time_s, known.time_s, 1e-6 * known.time_s);
+    EXPECT_NEAR(told.cost, known.cost, 1e-6 * known.cost);
+    EXPECT_NEAR(told.support_mm3, known.support_mm3, 1e-3 * known.support_mm3);
+  }
+}
+
 TEST(Estimate, NothingOnNoTray) {
   Profile profile = fixtures::plain_polyjet();
   const Estimate e = estimate(profile, {}, {0, 0}, Progress());
