@@ -49,7 +49,7 @@ struct PackProblem {
   int tabu_memory = 3;     // m: rounds a move stays forbidden
   int tabu_patience = 10;  // rounds without a better layout before the search starts afresh
   int tabu_restarts = 2;   // without a better layout before the search ends
-  int tabu_samples = 8;    // moves tried in one round
+  int tabu_samples = 6;    // moves tried in one round
   // After the search, parts are taken out and put back wherever they fit, in cavities and under
   // overhangs too, with a proven way out. Takes long where parts are large.
   bool anywhere = false;

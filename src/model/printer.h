@@ -50,7 +50,7 @@ struct PackSettings {
   double weight = 0.75;  // w of equation (1)
   int tabu_memory = 3;
   int tabu_patience = 10;
-  int tabu_samples = 8;
+  int tabu_samples = 6;
   double search_grid_mm = 3;
 };
 

@@ -20,7 +20,7 @@ constexpr double kDetour = 1.02;         // dearer than the best so far a layout
 constexpr std::size_t kStartWays = 6;    // ways up in every turn for the first layout
 constexpr double kWorthKeeping = 1.05;   // of the cheapest cost
 constexpr std::size_t kKeptOfCount = 2;  // layouts of equally many parts
-constexpr std::size_t kMostKept = 4;
+constexpr std::size_t kMostKept = 2;
 
 void lower(std::atomic<double>& least, double value) {
   double known = least.load();
