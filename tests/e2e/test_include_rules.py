@@ -20,11 +20,12 @@ MAY_INCLUDE = {
     "picture": {"offscreen", "model", "base"},
     "tray": {"picture", "model", "base"},
     "firmware_io": {"base"},
+    "http": {"base"},
     "job": {"tray", "picture", "pack", "printers", "shape", "offscreen", "model", "base"},
 }
 EVERYTHING = {"daemon", "cli"}
 FOLDERS = set(MAY_INCLUDE) | EVERYTHING
-OWNERS = {r"tetgen\.h": "one file", r"GL/osmesa\.h": "offscreen"}
+OWNERS = {r"tetgen\.h": "one file", r"GL/osmesa\.h": "offscreen", r"microhttpd\.h": "http"}
 
 LONG_LINES, TOO_LONG_LINES = 300, 450
 # spelled in pieces, so that this file does not contain them
