@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   packmerger::cli::add_profiles(program);
   packmerger::cli::add_devices(program);
   packmerger::cli::add_jobs(program);
+  packmerger::cli::add_keys(program);
   packmerger::cli::add_printers(program);
   packmerger::cli::add_simulate(program);
   try {

@@ -16,6 +16,7 @@ void add_devices(CLI::App& program);
 void add_send(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_jobs(CLI::App& program);
+void add_keys(CLI::App& program);
 void add_printers(CLI::App& program);
 
 // Progress on stderr: a bar on a terminal, otherwise a line "[ 42%] packing" whenever a stage has

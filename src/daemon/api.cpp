@@ -10,6 +10,7 @@ namespace {
 
 using nlohmann::json;
 using Verb = json (*)(Foreman&, const json&);
+using KeyVerb = json (*)(KeyRing&, const json&);
 
 constexpr int kDefaultJobs = 100;
 constexpr int kMostJobs = 1000;
@@ -91,6 +92,11 @@ json stop_printer(Foreman& foreman, const json& request) {
   return view_of(foreman, foreman.stop_at_once(name_of(request)));
 }
 
+// What a page shows, in one answer.
+json whole_state(Foreman& foreman, const json& request) {
+  return {{"jobs", list_jobs(foreman, request)}, {"printers", list_printers(foreman, request)}};
+}
+
 const std::map<std::string, Verb, std::less<>>& verbs() {
   static const std::map<std::string, Verb, std::less<>> kVerbs = {
       {"jobs.list", list_jobs},
@@ -100,6 +106,7 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
       {"jobs.cancel", change_job<&Foreman::cancel>},
       {"jobs.again", change_job<&Foreman::again>},
       {"printers.list", list_printers},
+      {"state", whole_state},
       {"printers.clear", clear_printer},
       {"printers.pause", pause_printer<true>},
       {"printers.resume", pause_printer<false>},
@@ -109,11 +116,42 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
   return kVerbs;
 }
 
-json result_of(Foreman& foreman, std::string_view text) {
+std::string key_name_of(const json& request) {
+  const auto found = request.find("name");
+  if (found == request.end() || !found->is_string()) not_understood("The request needs a name");
+  return found->get<std::string>();
+}
+
+json list_keys(KeyRing& keys, const json&) {
+  json list = json::array();
+  for (const WebKey& key : keys.list())
+    list.push_back({{"name", key.name}, {"made_s", key.made_s}});
+  return list;
+}
+
+json add_key(KeyRing& keys, const json& request) {
+  const std::string name = key_name_of(request);
+  return {{"name", name}, {"key", keys.add(name)}};
+}
+
+json revoke_key(KeyRing& keys, const json& request) {
+  keys.revoke(key_name_of(request));
+  return list_keys(keys, request);
+}
+
+const std::map<std::string, KeyVerb, std::less<>>& key_verbs() {
+  static const std::map<std::string, KeyVerb, std::less<>> kVerbs = {
+      {"keys.list", list_keys}, {"keys.add", add_key}, {"keys.revoke", revoke_key}};
+  return kVerbs;
+}
+
+json result_of(Foreman& foreman, KeyRing& keys, std::string_view text) {
   const json request = json::parse(text, nullptr, false);
   if (!request.is_object()) not_understood("The request is not a JSON object on one line");
   const auto name = request.find("verb");
   if (name == request.end() || !name->is_string()) not_understood("The request has no verb");
+  const auto key_verb = key_verbs().find(name->get<std::string>());
+  if (key_verb != key_verbs().end()) return key_verb->second(keys, request);
   const auto verb = verbs().find(name->get<std::string>());
   if (verb == verbs().end()) not_understood("The request's verb is unknown");
   return verb->second(foreman, request);
@@ -124,18 +162,29 @@ json error_view(Fault fault, const std::string& what, const std::string& hint) {
           {"error", {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}}}};
 }
 
-}  // namespace
-
-std::string answer(Foreman& foreman, std::string_view request) {
+template <typename Work>
+std::string answered(const Work& work) {
   json reply;
   try {
-    reply = {{"ok", true}, {"result", result_of(foreman, request)}};
+    reply = {{"ok", true}, {"result", work()}};
   } catch (const Error& error) {
     reply = error_view(error.fault(), error.what(), error.hint());
   } catch (const std::exception& error) {
     reply = error_view(Fault::kInternal, error.what(), "Look into the daemon's messages.");
   }
   return reply.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request) {
+  return answered([&] { return result_of(foreman, keys, request); });
+}
+
+std::string answer_upload(Foreman& foreman, const WebUpload& upload) {
+  return answered([&] {
+    return job_view(foreman, foreman.uploaded(upload.printer, upload.file, upload.name));
+  });
 }
 
 }  // namespace packmerger

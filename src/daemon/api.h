@@ -1,16 +1,21 @@
 // What the daemon answers to the requests of docs/DAEMON.md: JSON in, JSON out. Runs on the loop's
-// thread and touches nothing but the foreman.
+// thread and touches nothing but the foreman and the keys.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 #include "daemon/foreman.h"
+#include "daemon/key_ring.h"
+#include "daemon/web.h"
 
 namespace packmerger {
 
 // One request, one reply, both without a line end. A request that cannot be understood or done is
 // answered too: {"ok": false, "error": {"fault", "what", "hint"}}; nothing is thrown for it.
-std::string answer(Foreman& foreman, std::string_view request);
+std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request);
+
+// The same for a file that came over the web: the job that it became.
+std::string answer_upload(Foreman& foreman, const WebUpload& upload);
 
 }  // namespace packmerger

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <limits>
 #include <set>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/process.h"
+#include "daemon/config_sections.h"
 #include "daemon/config_table.h"
 #include "daemon/find_port.h"
 
@@ -21,10 +21,6 @@ namespace {
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 constexpr std::size_t kMaxSocketPath = 107;  // sun_path of unix(7), less its final zero
 
-fs::path resolved(const fs::path& file, const std::string& text) {
-  return (fs::absolute(file).parent_path() / text).lexically_normal();
-}
-
 bool is_printer_name(std::string_view text) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -32,36 +28,6 @@ bool is_printer_name(std::string_view text) {
   };
   return !text.empty() && text.size() <= 64 && text.front() != '.' &&
          std::all_of(text.begin(), text.end(), fits);
-}
-
-void read_prepare(TableReader& reader, const fs::path& file, PrepareConfig& prepare) {
-  reader.text("program", "the path of a program", [&](const std::string& text) {
-    prepare.program = resolved(file, text);
-    return true;
-  });
-  reader.number("time_s", 1, 1e6, "a number from 1 to 1000000 (s)",
-                [&](double value) { prepare.time_s = value; });
-  reader.integer("memory_bytes", std::int64_t{1} << 28, std::int64_t{1} << 50,
-                 "an integer from 268435456 (256 MiB) to 2^50 (bytes)", [&](std::int64_t value) {
-                   prepare.memory_bytes = static_cast<std::uint64_t>(value);
-                 });
-  reader.integer("nice", 0, 19, "an integer from 0 to 19",
-                 [&](std::int64_t value) { prepare.nice = static_cast<int>(value); });
-  reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), "an integer from 0 up",
-                 [&](std::int64_t value) { prepare.seed = value; });
-  reader.number("budget_s", 0.001, 1e6, "a number above 0 to 1000000 (s)",
-                [&](double value) { prepare.budget_s = value; });
-  reader.done();
-}
-
-void read_watch(TableReader& reader, WatchConfig& watch) {
-  reader.number("rescan_s", 0.1, 3600, "a number from 0.1 to 3600 (s)",
-                [&](double value) { watch.rescan_s = value; });
-  reader.number("still_s", 0, 3600, "a number from 0 to 3600 (s)",
-                [&](double value) { watch.still_s = value; });
-  reader.number("give_up_s", 0, 86400, "a number from 0 to 86400 (s)",
-                [&](double value) { watch.give_up_s = value; });
-  reader.done();
 }
 
 // What packmerger prepare is told beside the model, the profile and where to write.
@@ -245,7 +211,7 @@ DaemonConfig read_config(const fs::path& file) {
   TableReader top(file, &table, "", nullptr);
   read_top(top, file, config);
   const auto any = [](const toml::node&) { return true; };
-  for (const char* name : {"prepare", "watch", "printer"}) top.key(name, "a table", any);
+  for (const char* name : {"prepare", "watch", "web", "printer"}) top.key(name, "a table", any);
   top.done();
   if (const toml::table* prepare = table_in(file, table, "prepare")) {
     TableReader reader(file, prepare, "prepare.", nullptr);
@@ -254,6 +220,10 @@ DaemonConfig read_config(const fs::path& file) {
   if (const toml::table* watch = table_in(file, table, "watch")) {
     TableReader reader(file, watch, "watch.", nullptr);
     read_watch(reader, config.watch);
+  }
+  if (const toml::table* web = table_in(file, table, "web")) {
+    TableReader reader(file, web, "web.", nullptr);
+    read_web(reader, file, config.web);
   }
   if (config.state.empty())
     refuse(file, 1, "needs the key state: neither STATE_DIRECTORY nor HOME tells where to keep it");
@@ -291,6 +261,8 @@ std::vector<DaemonKey> daemon_keys() {
   read_prepare(prepare, file, config.prepare);
   TableReader watch(file, nullptr, "watch.", &keys);
   read_watch(watch, config.watch);
+  TableReader web(file, nullptr, "web.", &keys);
+  read_web(web, file, config.web);
   TableReader printers(file, nullptr, "printer.NAME.", &keys);
   read_printer_keys(printers, file, printer);
   return keys;

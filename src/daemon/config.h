@@ -30,6 +30,15 @@ struct WatchConfig {
   double give_up_s = 60;  // a file that looks cut short is taken after so long, and refused then
 };
 
+// The web server. Off until it has a port.
+struct WebConfig {
+  int port = 0;                       // 0: no web server
+  std::string address = "127.0.0.1";  // numeric
+  std::vector<std::string> hosts;     // names by which browsers reach it
+  std::uint64_t most_upload_bytes = std::uint64_t{1} << 30;
+  std::filesystem::path page;  // the built page's folder
+};
+
 struct PrinterConfig {
   std::string name;
   std::string profile;                   // an id, or the absolute path of a TOML file
@@ -51,6 +60,7 @@ struct DaemonConfig {
   unsigned socket_mode = 0600;
   PrepareConfig prepare;
   WatchConfig watch;
+  WebConfig web;
   double retry_s = 30;                  // between attempts to reach a printer, or to file a model
   std::vector<PrinterConfig> printers;  // by name
 

@@ -109,15 +109,19 @@ bool Foreman::arrived(const PrinterConfig& printer, const fs::path& file) {
   if (std::any_of(live_.begin(), live_.end(),
                   [&](const auto& item) { return item.second.fetching_from == file; }))
     return true;
+  return claim(begun(printer, file), file);
+}
+
+JobRecord Foreman::begun(const PrinterConfig& printer, const fs::path& origin) {
   JobRecord job;
   job.printer = printer.name;
-  job.name = file.filename().string();
-  job.origin = file.string();
+  job.name = origin.filename().string();
+  job.origin = origin.string();
   job.received_s = wall_clock_s();
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job);
-  return claim(job, file);
+  return job;
 }
 
 bool Foreman::claim(JobRecord job, const fs::path& file) {

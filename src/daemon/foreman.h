@@ -57,6 +57,12 @@ class Foreman {
   // the state folder. False when it cannot be taken now; it then stays where it is.
   bool arrived(const PrinterConfig& printer, const std::filesystem::path& file);
 
+  // The same for a file elsewhere in the state folder, as if a file of that name had been put into
+  // the printer's folder. Throws Error{kNoInput} for a printer that is not there, Error{kBusy}
+  // where it cannot be taken now.
+  JobRecord uploaded(const std::string& printer, const std::filesystem::path& file,
+                     const std::string& name);
+
   // Throws Error when the database cannot be written; the event then has to be given again.
   void handle(const Event& event);
 
@@ -97,6 +103,7 @@ class Foreman {
   void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
            const std::string& note = {});
 
+  JobRecord begun(const PrinterConfig& printer, const std::filesystem::path& origin);
   bool claim(JobRecord job, const std::filesystem::path& file);
   void forget(const JobRecord& job);
   void finish_claim(JobRecord job);

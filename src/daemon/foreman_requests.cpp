@@ -28,6 +28,16 @@ const PrinterConfig& Foreman::get_printer(const std::string& name) const {
               "packmerger printers list shows them.");
 }
 
+JobRecord Foreman::uploaded(const std::string& printer, const fs::path& file,
+                            const std::string& name) {
+  const PrinterConfig& chosen = get_printer(printer);
+  if (stopping_) throw Error(Fault::kBusy, "The daemon is ending", "Try again in a moment.");
+  const JobRecord job = begun(chosen, chosen.folder / name);
+  claim(job, file);
+  if (const std::optional<JobRecord> taken = store_.find(job.id)) return *taken;
+  throw Error(Fault::kBusy, "The file cannot be taken now", "Look into the daemon's messages.");
+}
+
 JobRecord Foreman::approve(std::int64_t id) {
   JobRecord job = get(id);
   const bool approves = job.state == JobState::kReady;

@@ -15,6 +15,7 @@
 #include "base/files.h"
 #include "daemon/api.h"
 #include "daemon/foreman.h"
+#include "daemon/front_desk.h"
 #include "daemon/move_file.h"
 #include "daemon/socket_server.h"
 #include "daemon/watch_folder.h"
@@ -118,8 +119,13 @@ struct Watch {
 class Loop {
  public:
   Loop(const DaemonConfig& config, Foreman& foreman, Queue<Event>& events, SocketServer& server,
-       const Log& log)
-      : config_(config), foreman_(foreman), events_(events), server_(server), log_(log) {
+       FrontDesk& desk, const Log& log)
+      : config_(config),
+        foreman_(foreman),
+        events_(events),
+        server_(server),
+        desk_(desk),
+        log_(log) {
     for (const PrinterConfig& printer : config.printers) watches_.push_back({&printer, {}, 0, {}});
   }
 
@@ -135,6 +141,7 @@ class Loop {
         tell(told_, error.what() + (". " + error.hint()));
       }
       server_.serve(now_s());
+      desk_.serve(now_s());
       wait(signals);
     } while (!signals.came());
   }
@@ -201,6 +208,7 @@ class Loop {
       until = std::min(until, std::max(watch.folder->next_look_s(), watch.retry_s));
     }
     server_.add_to(waiting);
+    desk_.add_to(waiting);
     if (!unhandled_.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(200));
     const int timeout_ms = std::max(0, static_cast<int>(1000 * (until - now_s()))) + 1;
     ::poll(waiting.data(), waiting.size(), timeout_ms);
@@ -210,6 +218,7 @@ class Loop {
   Foreman& foreman_;
   Queue<Event>& events_;
   SocketServer& server_;
+  FrontDesk& desk_;
   const Log& log_;
   std::vector<Watch> watches_;
   std::deque<Event> unhandled_;
@@ -234,13 +243,15 @@ void run_daemon(const DaemonConfig& config, const Log& log) {
   JobStore store(config.state / "jobs.sqlite");
   Queue<Event> events;
   Crew crew(config);
+  KeyRing keys(config.state / "keys.json");
   Foreman foreman(config, store, crew, log);
   foreman.recover();
   Threads threads(config, crew, events);
   {
     SocketServer server(config.socket, config.socket_mode,
-                        [&](std::string_view request) { return answer(foreman, request); });
-    Loop loop(config, foreman, events, server, log);
+                        [&](std::string_view request) { return answer(foreman, keys, request); });
+    FrontDesk desk(config, foreman, keys, log);
+    Loop loop(config, foreman, events, server, desk, log);
     log("listening at " + config.socket.string());
     loop.run(signals);
     log("ending");

@@ -227,11 +227,12 @@ TEST(Api, AnswersEveryKindOfNonsense) {
         R"({"verb": "jobs.show", "id": 1e300})", R"({"verb": "jobs.list", "limit": 0})",
         R"({"verb": "jobs.approve", "id": 1})", R"({"verb": "printers.clear"})",
         R"({"verb": "printers.clear", "name": "../x"})", "\xFF\xFE", "{\"verb\": \"\xFF\"}"}) {
-    const json reply = json::parse(answer(*shop.foreman_, request));
+    const json reply = json::parse(answer(*shop.foreman_, shop.keys_, request));
     EXPECT_FALSE(reply.at("ok").get<bool>()) << request;
     EXPECT_FALSE(reply.at("error").at("what").get<std::string>().empty()) << request;
   }
-  EXPECT_TRUE(json::parse(answer(*shop.foreman_, std::string(60000, '['))).contains("error"));
+  EXPECT_TRUE(
+      json::parse(answer(*shop.foreman_, shop.keys_, std::string(60000, '['))).contains("error"));
   EXPECT_EQ(shop.ask({{"verb", "jobs.list"}}).at("result").size(), 1U);
 }
 

@@ -103,7 +103,7 @@ class Workshop {
   }
 
   JobRecord job(std::int64_t id) { return store_->find(id).value(); }
-  json ask(const json& request) { return json::parse(answer(*foreman_, request.dump())); }
+  json ask(const json& request) { return json::parse(answer(*foreman_, keys_, request.dump())); }
   json view(std::int64_t id) { return ask({{"verb", "jobs.show"}, {"id", id}}).at("result"); }
 
   TemporaryFolder folder_;
@@ -111,6 +111,7 @@ class Workshop {
   std::unique_ptr<JobStore> store_;
   std::unique_ptr<Crew> crew_;
   std::unique_ptr<Foreman> foreman_;
+  KeyRing keys_{folder_.path() / "keys.json"};
   double now_s_ = 1000;
   int drops_ = 0;
 };

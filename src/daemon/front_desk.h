@@ -1,0 +1,53 @@
+// The loop's side of the web server: opens it, answers what comes in through it, and tells the
+// pages that watch what changed. Only the loop's thread uses it.
+#pragma once
+
+#include <poll.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/foreman.h"
+#include "daemon/key_ring.h"
+#include "daemon/web.h"
+
+namespace packmerger {
+
+class FrontDesk {
+ public:
+  using Log = std::function<void(const std::string&)>;
+
+  // Everything must outlive it. Does nothing where the settings name no web.port. Uploads that a
+  // daemon that died left behind are removed.
+  FrontDesk(const DaemonConfig& config, Foreman& foreman, KeyRing& keys, Log log);
+  FrontDesk(const FrontDesk&) = delete;
+  FrontDesk& operator=(const FrontDesk&) = delete;
+  ~FrontDesk();  // ends every connection
+
+  // What to poll for before the next serve().
+  void add_to(std::vector<pollfd>& waiting) const;
+
+  // A server that cannot listen is tried again, and told once. With the first key it goes from this
+  // machine alone to the address of the settings.
+  void serve(double now_s);
+
+ private:
+  void open(double now_s);
+  void answer_questions();
+  void publish(double now_s);
+
+  const DaemonConfig& config_;
+  Foreman& foreman_;
+  KeyRing& keys_;
+  Log log_;
+  WebQuestions questions_;
+  WebEvents events_;
+  std::unique_ptr<Web> web_;
+  double retry_s_ = 0;
+  double published_s_ = 0;
+  std::string told_;
+};
+
+}  // namespace packmerger

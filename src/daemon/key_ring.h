@@ -1,0 +1,47 @@
+// The keys with which programs and browsers may change something through the daemon's web server.
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace packmerger {
+
+struct WebKey {
+  std::string name;    // what people call it
+  std::string sha256;  // of the key's text, which is kept nowhere
+  double made_s = 0;   // Unix time
+};
+
+// Thread-safe. Kept in one file, whole or as it was before.
+class KeyRing {
+ public:
+  // Reads the file; there need not be one yet. Throws Error{kIo} where it is damaged: an unreadable
+  // list of keys must not count as an empty one.
+  explicit KeyRing(std::filesystem::path file);
+
+  // Makes a key of 256 random bits and returns its text, which nobody can tell again. Throws
+  // Error{kUsage} for a name that is taken or holds more than letters, digits, "-", "_", "." and
+  // spaces, Error{kCannotWrite}.
+  std::string add(const std::string& name);
+  // Throws Error{kNoInput} where there is none of that name.
+  void revoke(const std::string& name);
+
+  std::vector<WebKey> list() const;
+  bool empty() const { return list().empty(); }
+
+  // Whose key a text is. Takes as long for a wrong key as for a right one.
+  std::optional<std::string> owner(std::string_view text) const;
+
+ private:
+  void save(const std::vector<WebKey>& keys) const;
+
+  std::filesystem::path file_;
+  mutable std::mutex mutex_;  // guards keys_
+  std::vector<WebKey> keys_;
+};
+
+}  // namespace packmerger

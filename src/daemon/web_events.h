@@ -1,0 +1,40 @@
+// What changed, told to every browser that watches: the newest state counts, older ones may be
+// left out.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace packmerger {
+
+// Thread-safe.
+class WebEvents {
+ public:
+  // The loop tells the state as JSON text. What was told last is not told again.
+  void publish(std::string state);
+  // Whether somebody watches, so that the loop need not make a text for nobody.
+  bool watched() const;
+  void close();  // ends every stream
+
+  // A stream of server-sent events for one client: the state now, then every change, and a comment
+  // after ten quiet seconds, so that a client that went away is noticed. Nothing where too many
+  // watch already. The stream must not outlive this object.
+  std::function<std::optional<std::string>()> stream();
+
+ private:
+  std::optional<std::string> next(std::uint64_t& seen);
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::string state_;
+  std::uint64_t version_ = 0;
+  int streams_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace packmerger

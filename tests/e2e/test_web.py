@@ -1,0 +1,349 @@
+#!/usr/bin/python3
+"""The daemon's web server: what browsers and programs may do, and an attack pack that must not succeed."""
+import http.client
+import json
+import os
+import pathlib
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import program
+
+STL = b"solid a\n" + b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\nendloop\nendfacet\n" + b"endsolid a\n"
+SETTINGS = """state = "state"
+[web]
+port = PORT
+page = "page"
+most_upload_bytes = 1048576
+[prepare]
+program = "PREPARE"
+[printer.objet]
+profile = "objet30"
+handoff_folder = "out"
+"""
+
+
+def free_port():
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+class Daemon:
+    """packmergerd in a folder of its own; models wait for ever, so that no geometry runs."""
+
+    def __init__(self):
+        self.holder = tempfile.TemporaryDirectory(prefix="packmerger-web-")
+        self.folder = pathlib.Path(self.holder.name)
+        self.port = free_port()
+        (self.folder / "out").mkdir()
+        (self.folder / "page").mkdir()
+        (self.folder / "page" / "index.html").write_text("<!doctype html><title>page</title>")
+        (self.folder / "secret").write_text("secret")
+        (self.folder / "page" / "way-out").symlink_to(self.folder / "secret")
+        wait = self.folder / "wait"
+        wait.write_text("#!/bin/sh\nexec sleep 1000\n")
+        wait.chmod(0o755)
+        (self.folder / "c.toml").write_text(SETTINGS.replace("PORT", str(self.port)).replace("PREPARE", str(wait)))
+        self.log = open(self.folder / "log", "w")
+        self.process = subprocess.Popen([program.binary("packmergerd"), "--config", self.folder / "c.toml"],
+                                        stdout=self.log, stderr=self.log)
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            try:
+                socket.create_connection(("127.0.0.1", self.port), 1).close()
+                break
+            except OSError:
+                time.sleep(0.05)
+        self.key = self.shell("keys", "add", "tester").stdout.strip()
+
+    def shell(self, *arguments):
+        return subprocess.run([program.binary(), *arguments, "--socket", self.folder / "state/packmergerd.sock"],
+                              capture_output=True, text=True, timeout=60)
+
+    def ask(self, method, target, body=None, headers=None, key=True):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        headers = {**({"X-Api-Key": self.key} if key is True else {"X-Api-Key": key} if key else {}), **(headers or {})}
+        try:
+            connection.request(method, target, body, headers)
+        except BrokenPipeError:
+            pass  # refused before all was sent
+        reply = connection.getresponse()
+        content = reply.read()
+        connection.close()
+        return reply.status, content, reply.headers
+
+    def raw(self, data, patience=5):
+        """What comes back for these very bytes."""
+        answer = b""
+        with socket.create_connection(("127.0.0.1", self.port), 5) as one:
+            one.settimeout(patience)
+            try:
+                one.sendall(data)
+                while piece := one.recv(65536):
+                    answer += piece
+            except OSError:
+                pass
+        return answer
+
+    def upload(self, name=b"a.stl", content=STL, fields=((b"printer", b"objet"),), key=True, file_field=b"file", extra=b""):
+        body = b""
+        for field, value in fields:
+            body += b'--FORM7\r\nContent-Disposition: form-data; name="' + field + b'"\r\n\r\n' + value + b"\r\n"
+        body += b'--FORM7\r\nContent-Disposition: form-data; name="' + file_field + b'"; filename="' + name + b'"\r\n\r\n'
+        body += content + b"\r\n" + extra + b"--FORM7--\r\n"
+        return self.ask("POST", "/api/v1/jobs", body, {"Content-Type": "multipart/form-data; boundary=FORM7"}, key)
+
+    def memory_kib(self):
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(status.split("VmRSS:")[1].split()[0])
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait(60)
+        self.log.close()
+        self.holder.cleanup()
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Daemon()
+
+    @classmethod
+    def tearDownClass(cls):
+        alive = cls.daemon.process.poll() is None
+        cls.daemon.close()
+        assert alive, "the daemon died"
+
+
+class Use(Case):
+    def test_page_and_headers(self):
+        status, content, headers = self.daemon.ask("GET", "/", key=False)
+        self.assertEqual(status, 200)
+        self.assertIn(b"page", content)
+        self.assertIn("default-src 'none'", headers["Content-Security-Policy"])
+        self.assertEqual(headers["X-Content-Type-Options"], "nosniff")
+        self.assertIsNone(headers["Access-Control-Allow-Origin"])
+
+    def test_upload_becomes_a_job_and_is_worked_on(self):
+        status, content, _ = self.daemon.upload(name="Würfel 1.stl".encode())
+        self.assertEqual(status, 201, content)
+        job = json.loads(content)
+        self.assertEqual(job["name"], "Würfel 1.stl")
+        status, content, _ = self.daemon.ask("GET", f"/api/v1/jobs/{job['id']}", key=False)
+        self.assertEqual((status, json.loads(content)["printer"]), (200, "objet"))
+        for verb, expected in (("hold", 200), ("approve", 200), ("cancel", 200), ("cancel", 409)):
+            status, content, _ = self.daemon.ask("POST", f"/api/v1/jobs/{job['id']}/{verb}")
+            self.assertEqual(status, expected, content)
+        self.assertTrue(json.loads(content)["error"]["hint"])
+
+    def test_printers_are_paused_and_resumed(self):
+        for verb in ("pause", "resume"):
+            status, content, _ = self.daemon.ask("POST", f"/api/v1/printers/objet/{verb}")
+            self.assertEqual((status, json.loads(content)["paused"]), (200, verb == "pause"))
+        self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/none/pause")[0], 404)
+
+    def test_what_cannot_be_taken_is_told(self):
+        for upload, expected in ((self.daemon.upload(name=b"a.exe"), 415), (self.daemon.upload(fields=()), 422),
+                                 (self.daemon.upload(fields=((b"printer", b"none"),)), 404),
+                                 (self.daemon.upload(content=b"x" * 2000000), 413)):
+            self.assertEqual(upload[0], expected, upload[1])
+        self.assertEqual(self.daemon.ask("GET", "/api/v1/jobs/9999")[0], 404)
+        self.assertEqual(self.daemon.ask("DELETE", "/api/v1/jobs/1")[0], 405)
+        self.assertEqual(self.daemon.ask("GET", "/api/v1/nothing")[0], 404)
+
+    def test_pages_are_told_what_changes(self):
+        connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=30)
+        connection.request("GET", "/api/v1/events")
+        stream = connection.getresponse()
+        self.assertEqual(stream.headers["Content-Type"], "text/event-stream")
+
+        def next_state():
+            while not (line := stream.readline()).startswith(b"data:"):
+                pass
+            return json.loads(line[5:])["result"]
+
+        self.assertFalse(next_state()["printers"][0]["paused"])
+        self.daemon.ask("POST", "/api/v1/printers/objet/pause")
+        while not next_state()["printers"][0]["paused"]:
+            pass
+        self.daemon.ask("POST", "/api/v1/printers/objet/resume")
+        connection.close()
+
+    def test_revoked_keys_are_worthless(self):
+        key = self.daemon.shell("keys", "add", "guest").stdout.strip()
+        self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume", key=key)[0], 200)
+        self.assertEqual(self.daemon.shell("keys", "revoke", "guest").returncode, 0)
+        self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume", key=key)[0], 401)
+        self.assertNotIn("guest", self.daemon.shell("keys", "list").stdout)
+
+
+WAYS_UP = ["../", "..%2f", "%2e%2e/", "%2e%2e%2f", "..%5c", "..\\", "%252e%252e%252f", "....//", "..;/", "%c0%ae%c0%ae/", ".%00./"]
+GOALS = ["secret", "c.toml", "state/keys.json", "state/jobs.sqlite", "../../../../etc/passwd"]
+
+
+class Attack(Case):
+    def assert_secret(self, content, what):
+        for text in (b"secret", b"sha256", b"root:", b"SQLite", b"[printer"):
+            self.assertNotIn(text, content, what)
+
+    def test_traversal(self):
+        count = 0
+        for up in WAYS_UP:
+            for goal in GOALS:
+                for base in ("/", "/assets/", "/api/v1/jobs/1/files/"):
+                    target = base + up * 3 + goal
+                    answer = self.daemon.raw(f"GET {target} HTTP/1.1\r\nHost: localhost\r\nX-Api-Key: {self.daemon.key}\r\nConnection: close\r\n\r\n".encode())
+                    self.assertNotIn(b" 200 ", answer[:20], target)
+                    self.assert_secret(answer, target)
+                    count += 1
+        self.assertNotIn(b"secret", self.daemon.ask("GET", "/way-out")[1])
+        self.assertGreaterEqual(count, 100)
+
+    def test_names_never_become_paths(self):
+        before = set(program.files_below(self.daemon.folder / "state/folders"))
+        names = [b"../../x.stl", b"/etc/x.stl", b"..\\x.stl", b"C:\\x.stl", b"%2e%2e%2fx.stl", b".hidden.stl", b"~x.stl",
+                 b"<img src=x onerror=alert(1)>.stl", b"'; DROP TABLE jobs;--.stl", b"$(reboot).stl", b"`id`.stl",
+                 b"-rf.stl", b"a;b.stl", b"x\\x00.stl", b"\xff\xfe.stl", b"CON.stl", b"." * 50 + b".stl", b"a" * 5000 + b".stl",
+                 "‮lts.stl".encode(), b"{{7*7}}.stl", b"%s%n.stl", b"a|b.stl", b"a&b.stl", b"a?b#c.stl", b"con:aux.stl",
+                 b"a b.stl", b"\tx.stl", b"x.stl/..", b"x.stl ", b"x.STL"]
+        for name in names:
+            status, content, headers = self.daemon.upload(name=name)
+            self.assertIn(status, (201, 400, 413, 415, 422), (name, content))
+            self.assertEqual(headers["Content-Type"], "application/json" if status in (201, 415, 422) else headers["Content-Type"])
+            self.assertNotIn("html", headers["Content-Type"], name)
+            if status == 201:
+                job = json.loads(content)
+                self.assertNotIn("/", job["name"])
+                self.daemon.ask("POST", f"/api/v1/jobs/{job['id']}/cancel")
+        self.assertGreaterEqual(len(names), 30)
+        after = set(program.files_below(self.daemon.folder / "state/folders"))
+        stray = [one for one in after - before if "/failed" not in one]
+        self.assertFalse(stray, "an upload left its job")
+
+    def test_reserved_and_repeated_fields(self):
+        for field in ("file.path", "file.name", "file.size", "file.content_type", "path", "origin", "folder", "input", "id",
+                      "state", "sha256", "key", "X-Api-Key", "_method", "printer[]", "printer.name", "file[]", "..",
+                      "__proto__", "constructor", "filename", "tray", "port", "config", "socket", "print", "select", "userdata",
+                      "root", "plateindex"):
+            status, content, _ = self.daemon.upload(fields=((b"printer", b"objet"), (field.encode(), b"/etc/passwd")))
+            self.assertIn(status, (201, 422), (field, content))
+            self.assert_secret(content.replace(b'"sha256"', b""), field)
+            if status == 201:
+                self.daemon.ask("POST", f"/api/v1/jobs/{json.loads(content)['id']}/cancel")
+        second = b'--FORM7\r\nContent-Disposition: form-data; name="file"; filename="b.stl"\r\n\r\n' + STL + b"\r\n"
+        self.assertEqual(self.daemon.upload(extra=second)[0], 422)
+
+    def test_other_sites_pages(self):
+        origins = ["null", "http://evil.example", "https://evil.example", "http://localhost.evil.example", "http://127.0.0.1",
+                   "http://localhost:1", "file://", "chrome-extension://x", "http://[::1]", "http://evil.example:80"]
+        for origin in origins:
+            for verb in ("pause", "clear", "resume"):
+                status, content, headers = self.daemon.ask("POST", f"/api/v1/printers/objet/{verb}", headers={"Origin": origin})
+                self.assertEqual(status, 403, (origin, content))
+                self.assertIsNone(headers["Access-Control-Allow-Origin"])
+
+    def test_foreign_names(self):
+        for host in ("evil.example", "localhost.evil.example", "127.0.0.1.nip.io", "a", "", "evil.example:8080", "localhost@evil.example",
+                     "xn--e1awd7f.example", "printers.local.evil", "[evil]"):
+            for target in ("/", "/api/v1/jobs", "/api/v1/events"):
+                answer = self.daemon.raw(f"GET {target} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+                self.assertRegex(answer[:14], rb"HTTP/1.1 40[03]", (host, target))
+
+    def test_broken_requests(self):
+        bad = [b"", b"\r\n\r\n", b"GET\r\n\r\n", b"GET /\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", b"GET / HTTP/9.9\r\n\r\n",
+               b"GET / HTTP/1.1\r\n\r\n", b"POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n",
+               b"POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999999999999\r\n\r\n",
+               b"POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+               b"GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil\r\n\r\n", b"GET /" + b"a" * 70000 + b" HTTP/1.1\r\n\r\n",
+               b"GET / HTTP/1.1\r\n" + b"X: y\r\n" * 5000 + b"\r\n", b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"y" * 200000 + b"\r\n\r\n",
+               b"GET / HTTP/1.1\nHost: evil\n\n", b"GET / HTTP/1.1\r\nHost : localhost\r\n\r\n", b"OPTIONS * HTTP/1.1\r\nHost: localhost\r\n\r\n",
+               b"CONNECT evil:80 HTTP/1.1\r\nHost: localhost\r\n\r\n", b"TRACE / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+               b"GET http://evil.example/ HTTP/1.1\r\nHost: evil.example\r\n\r\n", b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"]
+        methods = [f"{m} /api/v1/printers/objet/pause HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode()
+                   for m in ("PUT", "DELETE", "PATCH", "PROPFIND", "pOST", "GET", "LINK", "PURGE", "MKCOL")]
+        forms = [b"POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nX-Api-Key: " + self.daemon.key.encode() + b"\r\nConnection: close\r\nContent-Type: " + kind
+                 + b"\r\nContent-Length: " + str(len(body)).encode() + b"\r\n\r\n" + body
+                 for kind, body in ((b"multipart/form-data", b"--FORM7--"), (b"multipart/form-data; boundary=", b"--"), (b"text/plain", b"x"),
+                                    (b"multipart/form-data; boundary=FORM7", b"--B\r\n\r\n"), (b"multipart/form-data; boundary=B", b"--B\r\nContent-Disposition: x\r\n\r\ny\r\n--B--"),
+                                    (b"multipart/form-data; boundary=" + b"B" * 20000, b"--FORM7--"), (b"application/x-www-form-urlencoded", b"printer=objet&file=x"))]
+        for data in bad + methods + forms:
+            answer = self.daemon.raw(data, patience=1)
+            self.assertNotRegex(answer[:14], rb"HTTP/1.1 20[1-9]", data[:80])
+            self.assert_secret(answer, data[:80])
+        self.assertGreaterEqual(len(bad + methods + forms), 30)
+        self.assertFalse(json.loads(self.daemon.ask("GET", "/api/v1/printers")[1])[0]["paused"])
+
+    def test_slow_and_endless_clients_take_no_memory(self):
+        before = self.daemon.memory_kib()
+        held = [socket.create_connection(("127.0.0.1", self.daemon.port)) for _ in range(30)]
+        for one in held:
+            one.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nX: ")
+            one.settimeout(1)
+        for _ in range(200):
+            for one in held:
+                try:
+                    one.sendall(b"y" * 4096)
+                except OSError:
+                    pass
+        for one in held:
+            one.close()
+        self.assertEqual(self.daemon.ask("GET", "/api/v1/jobs")[0], 200)
+        self.assertLess(self.daemon.memory_kib() - before, 60000)
+
+
+class Guesses(Case):
+    def test_guessed_keys(self):
+        guesses = ["", " ", "pm_", "admin", self.daemon.key[:-1], self.daemon.key + "x", self.daemon.key.upper(), self.daemon.key[3:],
+                   "*", "' or 1=1", "%00", "null", "true", "0", "undefined", "Bearer " + self.daemon.key, "pm_" + "A" * 43]
+        refused = 0
+        for guess in guesses * 2:
+            status, _, headers = self.daemon.ask("POST", "/api/v1/printers/objet/pause", key=guess)
+            self.assertIn(status, (401, 429), guess)
+            refused += status == 429
+        self.assertGreater(refused, 0)
+        self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume")[0], 429, "locked for a minute, even with the right key")
+
+
+class Alone(unittest.TestCase):
+    def test_listens_on_this_machine_until_there_is_a_key(self):
+        daemon = Daemon()
+        try:
+            settings = (daemon.folder / "c.toml").read_text().replace("[web]", '[web]\naddress = "0.0.0.0"')
+            daemon.shell("keys", "revoke", "tester")
+            daemon.process.terminate()
+            daemon.process.wait(60)
+            (daemon.folder / "c.toml").write_text(settings)
+            daemon.process = subprocess.Popen([program.binary("packmergerd"), "--config", daemon.folder / "c.toml"],
+                                              stdout=daemon.log, stderr=daemon.log)
+            self.assertEqual(self.listening(daemon), "0100007F")
+            daemon.shell("keys", "add", "first")
+            end = time.monotonic() + 30
+            while self.listening(daemon) != "00000000" and time.monotonic() < end:
+                time.sleep(0.1)
+            self.assertEqual(self.listening(daemon), "00000000")
+        finally:
+            daemon.close()
+
+    @staticmethod
+    def listening(daemon):
+        """The address, as the kernel tells it, at which somebody listens at the daemon's port."""
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]:
+                local, state = line.split()[1], line.split()[3]
+                if state == "0A" and int(local.split(":")[1], 16) == daemon.port:
+                    return local.split(":")[0]
+            time.sleep(0.05)
+        return None
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,79 @@
+#include "daemon/key_ring.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace packmerger {
+namespace {
+
+TEST(KeyRing, KnowsItsKeysAgain) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "keys.json";
+  KeyRing keys(file);
+  EXPECT_TRUE(keys.empty());
+  const std::string mine = keys.add("my browser");
+  const std::string other = keys.add("slicer");
+  EXPECT_NE(mine, other);
+  EXPECT_EQ(keys.owner(mine), "my browser");
+  const KeyRing again(file);
+  EXPECT_EQ(again.owner(other), "slicer");
+  EXPECT_EQ(again.list().size(), 2u);
+}
+
+TEST(KeyRing, KeepsNoKeysText) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "keys.json";
+  const std::string key = KeyRing(file).add("me");
+  EXPECT_EQ(read_file(file, 1 << 20).find(key), std::string::npos);
+  EXPECT_EQ(read_file(file, 1 << 20).find(key.substr(3)), std::string::npos);
+}
+
+TEST(KeyRing, KeysAreLongAndNeverTheSame) {
+  const TemporaryFolder folder;
+  KeyRing keys(folder.path() / "keys.json");
+  std::set<std::string> seen;
+  for (int i = 0; i < 50; ++i) {
+    const std::string key = keys.add(std::to_string(i));
+    EXPECT_EQ(key.size(), 3u + 43u);  // 256 bits, six a letter
+    EXPECT_TRUE(seen.insert(key).second);
+  }
+}
+
+TEST(KeyRing, WrongAndRevokedKeysOpenNothing) {
+  const TemporaryFolder folder;
+  KeyRing keys(folder.path() / "keys.json");
+  std::string key = keys.add("me");
+  for (const std::string& wrong :
+       {std::string(), key.substr(1), key + "x", key.substr(0, 45) + "~"})
+    EXPECT_FALSE(keys.owner(wrong)) << wrong;
+  keys.revoke("me");
+  EXPECT_FALSE(keys.owner(key));
+  EXPECT_THROW(keys.revoke("me"), Error);
+}
+
+TEST(KeyRing, RefusesNamesThatAreTakenOrOdd) {
+  const TemporaryFolder folder;
+  KeyRing keys(folder.path() / "keys.json");
+  keys.add("me");
+  for (const std::string& name : {std::string("me"), std::string(), std::string("<b>"),
+                                  std::string("a\nb"), std::string(65, 'a')})
+    EXPECT_THROW(keys.add(name), Error) << name;
+}
+
+TEST(KeyRing, ADamagedListIsNotAnEmptyOne) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "keys.json";
+  for (const char* text : {"", "{", "{}", "[1]", R"([{"name": "a"}])",
+                           R"([{"name": 1, "sha256": "", "made_s": 0}])"}) {
+    std::ofstream(file) << text;
+    EXPECT_THROW(KeyRing{file}, Error) << text;
+  }
+}
+
+}  // namespace
+}  // namespace packmerger

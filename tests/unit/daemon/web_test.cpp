@@ -1,0 +1,178 @@
+// The checks that requests to the web server pass, its routes, and the streams of what changed.
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "base/files.h"
+#include "daemon/web_events.h"
+#include "daemon/web_guard.h"
+#include "daemon/web_routes.h"
+
+namespace packmerger {
+namespace {
+
+struct Door {
+  TemporaryFolder folder;
+  KeyRing keys{folder.path() / "keys.json"};
+  std::string key = keys.add("me");
+  WebGuard guard{{"printers.example"}, keys};
+
+  int status(const HttpRequest& request, Access access, double now_s = 0) {
+    const auto refusal = guard.refused(request, access, now_s);
+    return refusal ? refusal->status : 200;
+  }
+};
+
+HttpRequest request(std::vector<std::pair<std::string, std::string>> headers = {}) {
+  HttpRequest request;
+  request.method = "GET";
+  request.path = "/";
+  request.peer = "127.0.0.1";
+  request.headers = std::move(headers);
+  if (request.header("Host").empty()) request.headers.emplace_back("Host", "localhost:8080");
+  return request;
+}
+
+TEST(WebGuard, OnlyKnownNamesLeadHere) {
+  Door door;
+  for (const char* host : {"localhost", "LOCALHOST:80", "127.0.0.1:8080", "192.168.1.7", "[::1]:80",
+                           "printers.example:8080"})
+    EXPECT_EQ(door.status(request({{"Host", host}}), Access::kOpen), 200) << host;
+  for (const char* host : {"evil.example", "localhost.evil.example", "127.0.0.1.evil.example",
+                           "printers.example.evil", "[evil]", ":80", "@localhost"})
+    EXPECT_EQ(door.status(request({{"Host", host}}), Access::kOpen), 403) << host;
+  HttpRequest none = request();
+  none.headers.clear();
+  EXPECT_EQ(door.status(none, Access::kOpen), 403);
+}
+
+TEST(WebGuard, ForeignPagesAreRefusedEvenWithAKey) {
+  Door door;
+  const auto from = [&](const char* origin) {
+    return door.status(request({{"Origin", origin}, {"X-Api-Key", door.key}}), Access::kChange);
+  };
+  EXPECT_EQ(from("http://localhost:8080"), 200);
+  for (const char* origin :
+       {"null", "http://evil.example", "http://localhost", "http://localhost:8080.evil.example"})
+    EXPECT_EQ(from(origin), 403) << origin;
+}
+
+TEST(WebGuard, ChangesNeedAKeyAndReadingFromElsewhereToo) {
+  Door door;
+  EXPECT_EQ(door.status(request(), Access::kRead), 200);
+  EXPECT_EQ(door.status(request(), Access::kChange), 401);
+  HttpRequest far = request();
+  far.is_loopback = false;
+  EXPECT_EQ(door.status(far, Access::kRead), 401);
+  EXPECT_EQ(door.status(far, Access::kOpen), 200);
+  far.headers.emplace_back("Authorization", "Bearer " + door.key);
+  EXPECT_EQ(door.status(far, Access::kRead), 200);
+  for (const char* header : {"X-Forwarded-For", "Forwarded", "Via"})
+    EXPECT_EQ(door.status(request({{header, "10.0.0.9"}}), Access::kRead), 401) << header;
+  EXPECT_EQ(door.status(request({{"X-Api-Key", "wrong"}}), Access::kRead), 401)
+      << "a wrong key is told, where none would be needed too";
+}
+
+TEST(WebGuard, WrongKeysLockTheirSenderOut) {
+  Door door;
+  const HttpRequest wrong = request({{"X-Api-Key", "pm_guess"}});
+  const HttpRequest right = request({{"X-Api-Key", door.key}});
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(door.status(wrong, Access::kChange, i * 0.1), 401);
+  EXPECT_EQ(door.status(right, Access::kChange, 2), 429);
+  HttpRequest elsewhere = right;
+  elsewhere.peer = "10.0.0.3";
+  EXPECT_EQ(door.status(elsewhere, Access::kChange, 2), 200);
+  EXPECT_EQ(door.status(right, Access::kChange, 62), 200);
+}
+
+TEST(WebGuard, ManySendersDoNotFillTheMemory) {
+  Door door;
+  HttpRequest wrong = request({{"X-Api-Key", "pm_guess"}});
+  for (int i = 0; i < 5000; ++i) {
+    wrong.peer = "10.0." + std::to_string(i / 256) + "." + std::to_string(i % 256);
+    EXPECT_EQ(door.status(wrong, Access::kChange, 1), 401);
+  }
+}
+
+TEST(WebRoutes, EachIsFoundByItsMethodAndPath) {
+  for (const WebRouteText& text : web_routes()) {
+    HttpRequest asked = request();
+    asked.method = text.method;
+    asked.path = text.path;
+    for (const auto& [name, value] :
+         {std::pair{"{id}", "7"}, std::pair{"{name}", "objet"}, std::pair{"{file}", "job.json"}})
+      if (const auto at = asked.path.find(name); at != std::string::npos)
+        asked.path.replace(at, std::string(name).size(), value);
+    const WebRoute route = route_of(asked);
+    EXPECT_NE(route.target, WebTarget::kNone) << asked.path;
+    EXPECT_EQ(route.access, text.access);
+    const bool reads = text.method == "GET";
+    EXPECT_EQ(text.access, reads ? Access::kRead : Access::kChange) << "changes need a key";
+    asked.method = "PATCH";
+    EXPECT_EQ(route_of(asked).target, WebTarget::kNone);
+    EXPECT_NE(route_of(asked).allowed.find(text.method), std::string::npos);
+  }
+  HttpRequest unknown = request();
+  unknown.path = "/api/v1/keys";
+  EXPECT_EQ(route_of(unknown).target, WebTarget::kNone) << "keys are the shell's alone";
+}
+
+TEST(WebRoutes, AreThoseOfTheDocument) {
+  const char* source = std::getenv("PACKMERGER_SOURCE");
+  if (source == nullptr) GTEST_SKIP() << "PACKMERGER_SOURCE is not set; run it with ctest";
+  const nlohmann::json document =
+      nlohmann::json::parse(read_file(fs::path(source) / "docs/openapi.json", 1 << 20));
+  std::set<std::string> told;
+  for (const auto& [path, methods] : document.at("paths").items())
+    for (const auto& [method, operation] : methods.items()) told.insert(method + " " + path);
+  std::set<std::string> known;
+  for (WebRouteText route : web_routes()) {
+    for (char& c : route.method) c = static_cast<char>(std::tolower(c));
+    known.insert(route.method + " " + route.path);
+  }
+  EXPECT_EQ(told, known);
+}
+
+TEST(WebRoutes, OnlyFilesOfAJobFolderAreShown) {
+  for (const char* name : {"job.json", "preview.png", "assembly.glb", "tray.3mf", "tray-2.stl",
+                           "program.gcode", "program-3.x3g", "01.stl", "profile.toml"})
+    EXPECT_TRUE(is_job_file(name)) << name;
+  for (const char* name : {"", ".", "..", "input", "x.stl", "tray-.stl", "job.json\n", "01.stl.txt",
+                           "../job.json", "jobs.sqlite", "preview.pngx"})
+    EXPECT_FALSE(is_job_file(name)) << name;
+}
+
+TEST(WebEvents, TellTheStateNowAndEveryChange) {
+  WebEvents events;
+  EXPECT_FALSE(events.watched());
+  events.publish("1");
+  auto stream = events.stream();
+  EXPECT_TRUE(events.watched());
+  EXPECT_EQ(stream(), "event: state\ndata: 1\n\n");
+  std::thread later([&] { events.publish("2"); });
+  EXPECT_EQ(stream(), "event: state\ndata: 2\n\n");
+  later.join();
+  events.close();
+  EXPECT_EQ(stream(), std::nullopt);
+  stream = nullptr;
+  EXPECT_FALSE(events.watched());
+}
+
+TEST(WebEvents, AreForSoManyPagesAtATime) {
+  WebEvents events;
+  std::vector<std::function<std::optional<std::string>()>> streams;
+  while (streams.size() < 100) {
+    streams.push_back(events.stream());
+    if (!streams.back()) break;
+  }
+  EXPECT_LT(streams.size(), 100u);
+  streams.clear();
+  EXPECT_TRUE(events.stream());
+}
+
+}  // namespace
+}  // namespace packmerger
