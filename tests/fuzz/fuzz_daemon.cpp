@@ -73,6 +73,7 @@ struct Office {
     store = std::make_unique<JobStore>(config.state / "jobs.sqlite");
     crew = std::make_unique<Crew>(config);
     foreman = std::make_unique<Foreman>(config, *store, *crew, [](const std::string&) {});
+    keys = std::make_unique<KeyRing>(config.state / "keys.json");
     foreman->recover();
     std::ofstream(printer.folder / "a.stl") << "a model";
     foreman->arrived(config.printers[0], printer.folder / "a.stl");
@@ -82,11 +83,12 @@ struct Office {
   std::unique_ptr<JobStore> store;
   std::unique_ptr<Crew> crew;
   std::unique_ptr<Foreman> foreman;
+  std::unique_ptr<KeyRing> keys;
 };
 
 void request(std::string_view text) {
   static const Office office;
-  const auto reply = nlohmann::json::parse(answer(*office.foreman, text));
+  const auto reply = nlohmann::json::parse(answer(*office.foreman, *office.keys, text));
   if (!reply.at("ok").get<bool>() && reply.at("error").at("hint").get<std::string>().empty())
     std::abort();
 }
