@@ -45,14 +45,23 @@ void throw_stopped() {
               "Look at the machine, switch it off and on, then print the job again.");
 }
 
-Reporter::Reporter(const Port& port, const PrintListener& listener, std::size_t total)
-    : port_(port), listener_(listener) {
+Reporter::Reporter(const Port& port, const PrintListener& listener, const StreamOptions& options,
+                   std::size_t total, RemainingTime remaining)
+    : port_(port),
+      listener_(listener),
+      options_(options),
+      remaining_(std::move(remaining)),
+      began_at_s_(port.now_s()),
+      told_at_s_(began_at_s_),
+      counted_at_s_(began_at_s_) {
   report_.total = total;
+  acknowledge();
   tell();
 }
 
 void Reporter::state(PrintState state, std::string text, std::vector<std::string> choices) {
   if (state == report_.state && text == report_.text && choices == report_.choices) return;
+  count_time();
   report_.state = state;
   report_.text = std::move(text);
   report_.choices = std::move(choices);
@@ -63,11 +72,38 @@ void Reporter::done(std::size_t done) {
   constexpr double kInterval_s = 0.1;
   if (done == report_.done) return;
   report_.done = done;
+  acknowledge();
   if (done == report_.total || port_.now_s() - told_at_s_ >= kInterval_s) tell();
 }
 
+void Reporter::heaters(std::vector<HeaterReport> heaters) {
+  if (!heaters.empty()) report_.heaters = std::move(heaters);
+}
+
+void Reporter::tick() {
+  constexpr double kInterval_s = 1;
+  if (port_.now_s() - told_at_s_ < kInterval_s) return;
+  acknowledge();
+  tell();
+}
+
+void Reporter::acknowledge() {
+  if (options_.on_acknowledged) options_.on_acknowledged(report_.done, report_.total);
+}
+
+void Reporter::count_time() {
+  const double now = port_.now_s();
+  if (report_.state == PrintState::kPrinting) printed_s_ += now - counted_at_s_;
+  counted_at_s_ = now;
+}
+
 void Reporter::tell() {
+  count_time();
   told_at_s_ = port_.now_s();
+  report_.elapsed_s = told_at_s_ - began_at_s_;
+  report_.remaining_s = remaining_.remaining_s(report_.done, printed_s_);
+  if (report_.state == PrintState::kConnecting || report_.state == PrintState::kCancelling)
+    report_.remaining_s.reset();
   if (listener_) listener_(report_);
 }
 

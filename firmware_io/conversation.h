@@ -7,6 +7,7 @@
 
 #include "firmware_io/port.h"
 #include "firmware_io/print_state.h"
+#include "firmware_io/remaining_time.h"
 
 namespace packmerger {
 
@@ -26,22 +27,34 @@ void check_machine(const std::string& port, const std::string& says, const std::
 // What a print fails with that was stopped at once.
 [[noreturn]] void throw_stopped();
 
-// Keeps a print's listener informed: every change of state at once, progress ten times a second.
+// Keeps a print's listeners informed: of every change of state and acknowledgement at once, of
+// progress ten times a second.
 class Reporter {
  public:
-  Reporter(const Port& port, const PrintListener& listener, std::size_t total);
+  Reporter(const Port& port, const PrintListener& listener, const StreamOptions& options,
+           std::size_t total, RemainingTime remaining);
 
   void state(PrintState state, std::string text = "", std::vector<std::string> choices = {});
   void done(std::size_t done);
+  void heaters(std::vector<HeaterReport> heaters);
+  // To be called whenever the link has waited.
+  void tick();
   PrintState current() const { return report_.state; }
 
  private:
+  void acknowledge();
+  void count_time();
   void tell();
 
   const Port& port_;
   const PrintListener& listener_;
+  const StreamOptions& options_;
+  const RemainingTime remaining_;
+  const double began_at_s_;
   PrintReport report_;
-  double told_at_s_ = 0;
+  double told_at_s_;
+  double printed_s_ = 0;  // in state kPrinting, until counted_at_s_
+  double counted_at_s_;
 };
 
 }  // namespace packmerger

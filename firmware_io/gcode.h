@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_io/print_state.h"
+
 namespace packmerger {
 
 struct GcodeCommand {
@@ -62,9 +64,10 @@ struct GcodeReply {
   std::string text;  // the whole line unless said otherwise above
   std::size_t number = 0;
   bool waiting = false;
-  bool has_temperature = false;  // of kOk: the answer to M105
-  bool has_position = false;     // of kOk: M114 answered on one line
-  bool has_firmware = false;     // of kOk: M115 answered on one line
+  bool has_temperature = false;       // of kOk: the answer to M105
+  std::vector<HeaterReport> heaters;  // of kTemperature, and of kOk with temperatures
+  bool has_position = false;          // of kOk: M114 answered on one line
+  bool has_firmware = false;          // of kOk: M115 answered on one line
 };
 
 // `line` without its line ending. Anything unknown is kOther, never an error.

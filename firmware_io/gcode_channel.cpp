@@ -196,6 +196,10 @@ GcodeAbilities connect_gcode(GcodeChannel& channel, const StreamOptions& options
     throw Error(Fault::kBusy, "The printer at " + channel.name() + " is printing from its own card",
                 "Wait until that print is done, or stop it at the printer.");
   reset_line_count(channel, options, control);
+  // Behind the drain, which waits until nothing more comes.
+  if (who.abilities.autoreport)
+    ask(channel, "M155 S2", options.timeout_s / kTries, control,
+        [](const Answer& a) { return a.ok; });
   return who.abilities;
 }
 

@@ -25,11 +25,14 @@ void refuse_unanswerable_pauses(const std::vector<GcodeCommand>& commands,
                   "Remove M0 and M1 from the program, or enable host prompts in the firmware.");
 }
 
-// After a failure the line count is unknown, so these go without numbers; no answer is insisted on.
-void send_safe_text(GcodeChannel& channel, const std::string& safe_gcode) {
+constexpr const char* kReportNothing = "M155 S0";
+
+// Behind a print, and after a failure the line count is unknown, so these go without numbers; no
+// answer is insisted on.
+void send_text(GcodeChannel& channel, const std::string& text) {
   constexpr double kPatience_s = 1;
   try {
-    for (const GcodeCommand& command : gcode_commands(safe_gcode)) {
+    for (const GcodeCommand& command : gcode_commands(text)) {
       channel.send(command.text);
       const double end = channel.now_s() + kPatience_s;
       while (channel.now_s() < end) {
@@ -51,7 +54,7 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
                  const PrintListener& listener, PrintControl& control) {
   const std::vector<GcodeCommand> commands = gcode_commands(program);
   check_gcode_commands(commands);
-  Reporter reporter(port, listener, commands.size());
+  Reporter reporter(port, listener, options, commands.size(), RemainingTime(time_marks(commands)));
   GcodeChannel channel(port);
   const GcodeAbilities abilities = connect_gcode(channel, options, control);
   refuse_unanswerable_pauses(commands, abilities);
@@ -59,13 +62,15 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
   std::vector<std::string> texts;
   texts.reserve(commands.size());
   for (const GcodeCommand& command : commands) texts.emplace_back(command.text);
+  const std::string silence = abilities.autoreport ? kReportNothing : "";
   GcodeStream stream(channel, std::move(texts), options, abilities, reporter, control);
   try {
     stream.run();
   } catch (...) {
-    if (stream.may_send()) send_safe_text(channel, options.safe_gcode);
+    if (stream.may_send()) send_text(channel, options.safe_gcode + "\n" + silence);
     throw;
   }
+  send_text(channel, silence);
   if (stream.was_cancelled_at_printer())
     throw Error(Fault::kIo, "The print was cancelled at the printer",
                 "Clear the bed and print the job again.");

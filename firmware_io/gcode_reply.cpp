@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 
 #include "firmware_io/ascii.h"
 #include "firmware_io/gcode.h"
@@ -64,6 +65,47 @@ bool is_temperature(std::string_view line) {
 
 bool is_position(std::string_view line) { return line.starts_with("X:") && has(line, "Y:"); }
 
+// A number at the front, taken away; false where there is none.
+bool take_number(std::string_view& text, double& number) {
+  text = trim(text);
+  std::size_t end = 0;
+  while (end < text.size() && (is_digit(text[end]) || text[end] == '.' || text[end] == '-')) ++end;
+  if (end == 0) return false;
+  number = std::strtod(std::string(text.substr(0, end)).c_str(), nullptr);
+  text.remove_prefix(end);
+  return true;
+}
+
+// "T", "T0", "B", "C": the name of a heater for people; empty for another word.
+std::string heater_name(std::string_view word) {
+  if (word == "T") return "tool";
+  if (word == "B") return "bed";
+  if (word == "C") return "chamber";
+  if (word.size() == 2 && word[0] == 'T' && is_digit(word[1]))
+    return "tool " + std::string(1, word[1]);
+  return "";
+}
+
+// " T:21.87 /0.00 B:21.87 /0.00 T0:… @:0 B@:0": where the tools are numbered, T is one of them.
+std::vector<HeaterReport> read_heaters(std::string_view line) {
+  std::vector<HeaterReport> heaters;
+  bool numbered = false;
+  for (std::size_t at = line.find(':'); at != std::string_view::npos; at = line.find(':', at + 1)) {
+    const std::size_t begin = line.find_last_of(" \t", at) + 1;
+    HeaterReport heater{heater_name(line.substr(begin, at - begin)), 0, {}};
+    std::string_view rest = line.substr(at + 1);
+    if (heater.name.empty() || !take_number(rest, heater.actual_c)) continue;
+    rest = trim(rest);
+    double target_c = 0;
+    if (rest.starts_with('/') && take_number(rest = rest.substr(1), target_c))
+      heater.target_c = target_c;
+    numbered = numbered || heater.name.starts_with("tool ");
+    heaters.push_back(std::move(heater));
+  }
+  if (numbered) std::erase_if(heaters, [](const HeaterReport& h) { return h.name == "tool"; });
+  return heaters;
+}
+
 bool is_ok(std::string_view line) {
   return line.starts_with("ok") &&
          (line.size() == 2 || !std::isalnum(static_cast<unsigned char>(line[2])));
@@ -72,6 +114,7 @@ bool is_ok(std::string_view line) {
 void read_ok(std::string_view line, GcodeReply& reply) {
   reply.kind = GcodeReplyKind::kOk;
   reply.has_temperature = has(line, " T:") || has(line, " T0:") || has(line, " B:");
+  if (reply.has_temperature) reply.heaters = read_heaters(line);
   reply.has_position = has(line, "X:") && has(line, "Y:");
   reply.has_firmware = has(line, "FIRMWARE_NAME:");
 }
@@ -133,6 +176,7 @@ GcodeReply read_gcode_reply(std::string_view line) {
     reply.kind = GcodeReplyKind::kStart;
   } else if (is_temperature(text)) {
     reply.kind = GcodeReplyKind::kTemperature;
+    reply.heaters = read_heaters(text);
   } else if (is_position(text)) {
     reply.kind = GcodeReplyKind::kPosition;
   } else {

@@ -109,6 +109,7 @@ void GcodeStream::stand_still() {
   double asked_at_s = channel_.now_s();
   while (paused_ && !cancelling_) {
     obey_requests();
+    reporter_.tick();
     if (channel_.now_s() - asked_at_s >= kPoll_s) {
       unanswered_.clear();
       send_raw("M105");

@@ -82,7 +82,9 @@ std::size_t GcodeStream::exchange(std::size_t number) {
     }
     obey_requests();
     watch_unproven_life();
+    reporter_.tick();
     if (may_give_another()) give(last_ + 1);
+    ask_temperatures();
     if (const auto reply = channel_.receive(resend_ ? kSettle_s : kSlice_s))
       handle(*reply);
     else
@@ -124,12 +126,27 @@ void GcodeStream::give(std::size_t number) {
   show_state();
 }
 
+// Of a printer that does not tell them by itself. The answer also says that everything before was
+// answered or got lost.
+void GcodeStream::ask_temperatures() {
+  constexpr double kPoll_s = 5;
+  if (abilities_.autoreport || cancelling_ || resend_ || m105_behind_ ||
+      unanswered_.size() >= kMostLines || channel_.now_s() - asked_temperatures_at_s_ < kPoll_s)
+    return;
+  asked_temperatures_at_s_ = channel_.now_s();
+  send_raw("M105");
+  m105_behind_ = true;
+}
+
 void GcodeStream::handle(const GcodeReply& reply) {
   const bool heating = is_heating(command(last_));
-  // A temperature report may come on its own for ever: it proves nothing unless we wait for heat.
-  if (reply.kind != GcodeReplyKind::kTemperature || heating) alive_at_s_ = channel_.now_s();
+  reporter_.heaters(reply.heaters);
   const bool waits_for_heat = reply.text.find(" W:") != std::string::npos;
   if (reply.kind == GcodeReplyKind::kBusy || waits_for_heat) works_at_s_ = channel_.now_s();
+  // A temperature report may come on its own for ever: it proves nothing unless it is that of a
+  // wait for heat, which has a W where the others are asked for too.
+  const bool waits = heating && (!abilities_.autoreport || waits_for_heat);
+  if (reply.kind != GcodeReplyKind::kTemperature || waits) alive_at_s_ = channel_.now_s();
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
       if (reply.has_position && is_behind_program(last_)) position_seen_ = true;

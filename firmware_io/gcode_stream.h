@@ -67,6 +67,7 @@ class GcodeStream {
   void watch_unproven_life();
   void recover();
   void send_raw(std::string_view line);
+  void ask_temperatures();
   void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
 
@@ -106,6 +107,7 @@ class GcodeStream {
   bool m105_behind_ = false;        // an M105 was sent behind them
   bool taken_for_granted_ = false;  // only that M105 was answered
   int attempts_ = 0;
+  double asked_temperatures_at_s_ = 0;
   double alive_at_s_ = 0;
   double attempt_at_s_ = 0;
   double works_at_s_ = 0;  // last proof that the printer is still at the line

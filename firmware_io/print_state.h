@@ -16,6 +16,15 @@ enum class PrintState { kConnecting, kHeating, kPrinting, kPaused, kWaiting, kCa
 // "connecting", "heating", "printing", "paused", "waiting", "cancelling", "done".
 std::string_view print_state_name(PrintState state);
 
+// As the machine told it last.
+struct HeaterReport {
+  std::string name;  // "tool", "tool 1", "bed", "chamber"
+  double actual_c = 0;
+  std::optional<double> target_c;  // 0: off
+
+  bool operator==(const HeaterReport&) const = default;
+};
+
 // `done` of `total` program lines (G-code) or bytes (x3g) were acknowledged by the printer.
 // `text` is for people and may be empty: temperatures, or what the printer waits for.
 struct PrintReport {
@@ -23,12 +32,19 @@ struct PrintReport {
   std::size_t done = 0;
   std::size_t total = 0;
   std::string text;
-  std::vector<std::string> choices;  // of kWaiting: the buttons, for answer(); may be empty
+  std::vector<std::string> choices;   // of kWaiting: the buttons, for answer(); may be empty
+  std::vector<HeaterReport> heaters;  // empty until the machine tells
+  double elapsed_s = 0;               // since the link began
+  std::optional<double> remaining_s;  // learned while printing; pauses to come are not in it
 };
 
-// Called on the thread that prints: at every change of state and otherwise at most ten times a
-// second. Must return quickly; an exception thrown by it ends the print as a failure does.
+// Called on the thread that prints: at every change of state, and otherwise from once to ten times
+// a second. Must return quickly; an exception thrown by it ends the print as a failure does.
 using PrintListener = std::function<void(const PrintReport&)>;
+
+// Called on the thread that prints, before anything further is sent: `done` of `total` lines or
+// bytes were acknowledged. Called again at least once a second although nothing has changed.
+using AcknowledgeListener = std::function<void(std::size_t done, std::size_t total)>;
 
 struct StreamOptions {
   double timeout_s = 30;     // silence after which the printer counts as gone
@@ -38,6 +54,7 @@ struct StreamOptions {
   std::string pause_gcode;   // G-code: executed once a print stands paused
   std::string resume_gcode;  // G-code: executed before it goes on
   std::string machine;       // must be in what the machine says of itself; empty: any machine
+  AcknowledgeListener on_acknowledged;
   std::size_t window_bytes = 0;  // G-code: unacknowledged bytes at most; 0: one line at a time
 };
 

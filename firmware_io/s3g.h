@@ -31,11 +31,14 @@ enum Query : std::uint8_t {
 
 // Actions that a link must know by name; all are buffered and executed in order.
 enum Action : std::uint8_t {
+  kDelay = 0x85,
   kWaitForTool = 0x87,
   kWaitForPlatform = 0x8D,
   kFactoryReset = 0x98,
   kBuildStart = 0x99,
-  kBuildEnd = 0x9A
+  kBuildEnd = 0x9A,
+  kMoveIn = 0x8E,    // a time
+  kMoveAlong = 0x9B  // a way at a speed
 };
 
 enum Response : std::uint8_t {

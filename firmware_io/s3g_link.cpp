@@ -38,7 +38,8 @@ void print_x3g(Port& port, std::string_view program, const StreamOptions& option
     counted.push_back(done);
   }
 
-  Reporter reporter(port, listener, program.size());
+  Reporter reporter(port, listener, options, program.size(),
+                    RemainingTime(time_marks(actions, counted)));
   s3g::Channel channel(port, options.timeout_s);
   s3g::Print print(channel, reporter, control);
   print.connect(options.boot_wait_s, options.machine);

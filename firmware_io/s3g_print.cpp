@@ -11,8 +11,6 @@ namespace {
 
 constexpr int kMaxRejected = 5;
 constexpr double kWatch_s = 1;
-constexpr std::uint8_t kStatusHeatShutdown = 1U << 6;
-constexpr std::uint8_t kStatusWaitsForButton = 1U << 4;
 constexpr std::uint8_t kStatusBusyAlone = (1U << 3) | (1U << 2);  // with a script of its own
 
 const char* const kPrintAgain = "Clear the bed and print the job again.";
@@ -22,10 +20,6 @@ const char* const kPrintAgain = "Clear the bed and print the job again.";
 }
 
 std::uint8_t code_of(std::string_view action) { return static_cast<std::uint8_t>(action[0]); }
-
-bool waits_for_heat(std::string_view action) {
-  return code_of(action) == kWaitForTool || code_of(action) == kWaitForPlatform;
-}
 
 bool is_building(BuildState state) {
   return state == BuildState::kRunning || state == BuildState::kPaused ||
@@ -79,6 +73,7 @@ void Print::connect(double boot_wait_s, const std::string& machine) {
 void Print::run(const std::vector<std::string_view>& actions,
                 const std::vector<std::size_t>& counted) {
   actions_ = &actions;
+  note_heaters();
   reporter_.state(PrintState::kPrinting);
   watched_at_s_ = channel_.now_s();
   for (std::size_t i = 0; i < actions.size(); ++i) {
@@ -190,6 +185,7 @@ void Print::obey() {
   control_.take_answer();  // a Replicator is answered at its own panel
   if (control_.stopped()) stop_at_once();
   if (control_.cancelled()) cancel();
+  reporter_.tick();
   if (const auto wanted = control_.take_pause_request()) pause_wanted_ = wanted;
   if (pause_wanted_ && seen_running_) set_paused(*std::exchange(pause_wanted_, std::nullopt));
 }
@@ -230,59 +226,6 @@ void Print::cancel() {
     channel_.pause(kSlice_s / 2);
   }
   throw Error(Fault::kInterrupted, "The print was cancelled", "");
-}
-
-// Asks the printer how its build stands.
-void Print::watch() {
-  watched_at_s_ = channel_.now_s();
-  // An empty buffer: the build start was executed.
-  if (started_ && !seen_running_) seen_running_ = channel_.free_buffer() == capacity_;
-  const Statistics statistics = channel_.statistics();
-  const std::uint8_t board_status = channel_.board_status();
-  if ((board_status & kStatusHeatShutdown) != 0) {
-    may_abort_ = false;
-    fail("The printer shut its heaters down because one was too hot or failed",
-         "Switch the printer off, check heaters and sensors, then print the job again.");
-  }
-  judge(statistics);
-  show(statistics, board_status);
-}
-
-void Print::judge(const Statistics& statistics) {
-  if (statistics.state == BuildState::kRunning) seen_running_ = true;
-  if (!seen_running_) return;  // the state is still that of the build before
-  const bool cancelled =
-      statistics.state == BuildState::kCancelled || statistics.state == BuildState::kCancelling;
-  const bool reset = statistics.state == BuildState::kNone;
-  if (cancelled || reset) may_abort_ = false;
-  if (cancelled) fail("The build was cancelled at the printer", kPrintAgain);
-  if (reset)
-    fail("The printer was reset in the middle of the print",
-         "Check the printer's power supply. " + std::string(kPrintAgain));
-  if (statistics.state == BuildState::kFinished && !ended_)
-    fail("The printer ended its build before the program was through", kPrintAgain);
-}
-
-void Print::show(const Statistics& statistics, std::uint8_t board_status) {
-  if (statistics.state == BuildState::kPaused) return reporter_.state(PrintState::kPaused);
-  if ((board_status & kStatusWaitsForButton) != 0)
-    return reporter_.state(PrintState::kWaiting, "Press the button at the printer");
-  const std::size_t current = start_ + statistics.actions;
-  const bool heating = statistics.state == BuildState::kRunning && current < actions_->size() &&
-                       waits_for_heat((*actions_)[current]);
-  if (heating)
-    reporter_.state(PrintState::kHeating, heating_text((*actions_)[current]));
-  else
-    reporter_.state(PrintState::kPrinting);
-}
-
-std::string Print::heating_text(std::string_view action) {
-  const auto tool = static_cast<std::uint8_t>(action[1]);
-  const bool platform = code_of(action) == kWaitForPlatform;
-  const int now = channel_.temperature(tool, platform ? 0x1E : 0x02);
-  const int target = channel_.temperature(tool, platform ? 0x21 : 0x20);
-  return (platform ? "platform " : "tool ") + std::to_string(now) + " of " +
-         std::to_string(target) + " °C";
 }
 
 void Print::abort_quietly() {

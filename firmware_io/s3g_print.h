@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,8 @@ class Print {
   void judge(const Statistics& statistics);
   void show(const Statistics& statistics, std::uint8_t board_status);
   std::string heating_text(std::string_view action);
+  void note_heaters();
+  void tell_heaters();
 
   Channel& channel_;
   Reporter& reporter_;
@@ -63,6 +66,10 @@ class Print {
   std::optional<bool> pause_wanted_;  // asked for, until the build has begun
   bool may_abort_ = true;
   double watched_at_s_ = 0;
+
+  std::set<std::uint8_t> tools_;  // that the program heats
+  bool heats_platform_ = false;
+  double heaters_at_s_ = 0;
 };
 
 }  // namespace packmerger::s3g

@@ -93,6 +93,7 @@ class UsbPrint {
       const std::size_t taken = port_.write(block, kTransfer_s);
       sent_ += taken;
       reporter_.done(sent_);
+      reporter_.tick();
       if (taken > 0) moved_at_s_ = port_.now_s();
       if (taken == 0) pause();
       if (taken < block.size()) await_ready();
@@ -166,7 +167,7 @@ class UsbPrint {
 void print_usb(UsbPort& port, const std::filesystem::path& document, const std::string& wanted_id,
                const StreamOptions& options, const PrintListener& listener, PrintControl& control) {
   Document source(document);
-  Reporter reporter(port, listener, source.size());
+  Reporter reporter(port, listener, options, source.size(), RemainingTime({}));
   UsbPrint print(port, source, options, reporter, control);
   print.check_name(wanted_id);
   try {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/duration.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
 
@@ -21,6 +22,8 @@ std::string print_text(const json& print) {
   std::string text =
       fmt::format("{} {:.0f} %", text_of(print, "stage"), 100 * print.value("fraction", 0.0));
   if (const std::string what = text_of(print, "text"); !what.empty()) text += ", " + what;
+  if (const json left = print.value("remaining_s", json()); left.is_number())
+    text += ", " + duration_text(left.get<double>()) + " left";
   std::string choices;
   for (const json& choice : print.value("choices", json::array()))
     choices += (choices.empty() ? "" : ", ") + plain_text(choice);

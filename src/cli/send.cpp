@@ -2,14 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <chrono>
+#include <future>
 #include <memory>
 #include <optional>
 
 #include "base/error.h"
 #include "cli/daemon_verb.h"
+#include "cli/print_dialogue.h"
 #include "cli/verb.h"
 #include "daemon/find_port.h"
 #include "daemon/job_folder.h"
+#include "daemon/progress_file.h"
 
 namespace packmerger::cli {
 namespace {
@@ -22,34 +28,26 @@ struct Arguments {
   bool json = false;
 };
 
-// Ctrl-C is the link's business: it stops the printer properly before it ends.
-void show(const Progress& progress, const PrintReport& report) {
-  const double fraction =
-      report.total == 0 ? 0 : static_cast<double>(report.done) / static_cast<double>(report.total);
-  try {
-    progress.report(print_state_name(report.state), fraction);
-  } catch (const Error& error) {
-    if (error.fault() != Fault::kInterrupted) throw;
-  }
+// The print runs on a thread of its own; this one listens to people.
+void stream_watched(const Arguments& arguments, const std::string& port,
+                    const fs::path& told_file) {
+  PrintControl control;
+  PrintDialogue dialogue(control, ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
+  auto print = std::async(std::launch::async, [&] {
+    send_tray(
+        arguments.folder, arguments.tray, port, told_file,
+        [&](const PrintReport& report) { dialogue.tell(report); }, control);
+  });
+  while (print.wait_for(std::chrono::seconds(0)) != std::future_status::ready) dialogue.listen();
+  print.get();
 }
 
-class Teller {
- public:
-  explicit Teller(const Progress& progress) : progress_(progress) {}
-
-  void tell(const PrintReport& report) {
-    show(progress_, report);
-    if (report.state == PrintState::kWaiting && state_ != report.state)
-      fmt::print(stderr, "\nThe printer waits: {}\n", report.text);
-    if (report.state == PrintState::kCancelling && state_ != report.state)
-      fmt::print(stderr, "\nCancelling, please wait until the printer has stopped.\n");
-    state_ = report.state;
-  }
-
- private:
-  const Progress& progress_;
-  std::optional<PrintState> state_;
-};
+void tell_interrupted_print(const fs::path& told_file, Dialect dialect) {
+  const std::optional<Told> told = read_told(told_file);
+  if (told && told->done < told->total)
+    fmt::print(stderr, "The print of this tray before ended at {}.\n",
+               told_text(*told, dialect == Dialect::kGcode ? "line" : "byte"));
+}
 
 std::string find_printer(const Profile& profile) {
   const std::vector<std::string>& usb_ids = profile.link.usb_ids;
@@ -62,14 +60,10 @@ std::string find_printer(const Profile& profile) {
 void stream(const Arguments& arguments, int trays) {
   const Profile profile = read_prepared_profile(arguments.folder);
   const std::string port = arguments.port.empty() ? find_printer(profile) : arguments.port;
-  {
-    const Progress progress = terminal_progress();
-    PrintControl control(&interrupted());
-    Teller teller(progress);
-    send_tray(
-        arguments.folder, arguments.tray, port,
-        [&](const PrintReport& report) { teller.tell(report); }, control);
-  }
+  const fs::path told_file =
+      fs::path(arguments.folder) / fmt::format("sent-{}.progress", arguments.tray);
+  tell_interrupted_print(told_file, profile.dialect);
+  stream_watched(arguments, port, told_file);
   if (arguments.json)
     return print_json(
         {{"state", "done"}, {"tray", arguments.tray}, {"trays", trays}, {"port", port}});

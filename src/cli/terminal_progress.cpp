@@ -17,7 +17,16 @@ namespace {
 // A signal handler has no other way to speak to the program.
 std::atomic<bool> interrupt_flag{false};
 
+std::atomic<int> interrupt_count{0};
+std::atomic<int> deadly_count{2};
+
 void on_signal(int) { interrupt_flag.store(true); }
+
+void on_counted_signal(int number) {
+  if (++interrupt_count < deadly_count) return;
+  ::signal(number, SIG_DFL);
+  ::raise(number);
+}
 
 class Reporter {
  public:
@@ -49,6 +58,19 @@ class Reporter {
 }  // namespace
 
 const std::atomic<bool>& interrupted() { return interrupt_flag; }
+
+void count_interrupts(int deadly) {
+  deadly_count = deadly;
+  struct sigaction action {};
+  action.sa_handler = on_counted_signal;
+  ::sigaction(SIGINT, &action, nullptr);
+  action.sa_handler = on_signal;
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+int interrupts() { return interrupt_count; }
+
+void forget_interrupts() { interrupt_count = 0; }
 
 Progress terminal_progress() {
   struct sigaction action {};

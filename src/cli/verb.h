@@ -26,4 +26,10 @@ Progress terminal_progress();
 // Set by SIGINT and SIGTERM once terminal_progress() was called.
 const std::atomic<bool>& interrupted();
 
+// From now on SIGINT is counted instead, and the one that makes it `deadly` ends the program at
+// once; SIGTERM sets interrupted() still.
+void count_interrupts(int deadly);
+int interrupts();
+void forget_interrupts();
+
 }  // namespace packmerger::cli

@@ -6,6 +6,7 @@
 
 #include "daemon/job_view.h"
 #include "daemon/move_file.h"
+#include "daemon/progress_file.h"
 
 namespace packmerger {
 namespace {
@@ -57,6 +58,25 @@ fs::path Foreman::job_path(std::int64_t id) const {
   return config_.state / "jobs" / std::to_string(id);
 }
 
+fs::path Foreman::told_file(const JobRecord& job) const {
+  return job_path(job.id) / ("sent-" + std::to_string(job.next_tray) + ".progress");
+}
+
+// How far the tray's print was told to go, as its sender wrote it down.
+void Foreman::note_told(JobRecord& job) const {
+  const Told told = read_told(told_file(job)).value_or(Told{});
+  job.told = static_cast<std::int64_t>(told.done);
+  job.told_total = static_cast<std::int64_t>(told.total);
+}
+
+std::string Foreman::with_told(const JobRecord& job, const std::string& reason) const {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (job.told_total == 0 || printer == nullptr) return reason;
+  const bool is_gcode = printer->abilities.dialect == Dialect::kGcode;
+  const Told told{static_cast<std::size_t>(job.told), static_cast<std::size_t>(job.told_total)};
+  return reason + ", told up to " + told_text(told, is_gcode ? "line" : "byte");
+}
+
 void Foreman::say(const JobRecord& job, const std::string& text) const {
   log_("job " + std::to_string(job.id) + " (" + printable(job.name) + ", " + job.printer +
        "): " + printable(text));
@@ -92,7 +112,8 @@ void Foreman::recover() {
       job.state = JobState::kApproved;  // handing over twice gives the same folder
       store_.save(job, "the daemon was interrupted; handing over again");
     } else {
-      end(job, JobState::kFailed, "interrupted while printing",
+      note_told(job);
+      end(job, JobState::kFailed, with_told(job, "interrupted while printing"),
           "See what the printer did, clear its bed, and print again with packmerger jobs again " +
               std::to_string(job.id) + ".");
     }
@@ -246,14 +267,17 @@ void Foreman::start_sending(JobRecord job) {
   job.state = JobState::kSending;
   job.reason.clear();
   job.hint.clear();
+  job.told = job.told_total = 0;
   if (job.sending_s == 0) job.sending_s = wall_clock_s();
   store_.save(job, "tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays),
               &record);
+  std::error_code untold;  // the sender tells where its file cannot be made
+  fs::create_directories(job_path(job.id), untold);
   sending_[job.printer] = job.id;
   live.control = std::make_shared<PrintControl>();
   live.print = {};
   crew_.senders.at(job.printer)
-      .push({job.id, job.folder, job.next_tray, handoff_name(job), live.control});
+      .push({job.id, job.folder, job.next_tray, handoff_name(job), told_file(job), live.control});
   say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
 }
 

@@ -95,6 +95,9 @@ class Foreman {
 
  private:
   std::filesystem::path job_path(std::int64_t id) const;
+  std::filesystem::path told_file(const JobRecord& job) const;
+  void note_told(JobRecord& job) const;
+  std::string with_told(const JobRecord& job, const std::string& reason) const;
   JobRecord get(std::int64_t id) const;
   const PrinterConfig& get_printer(const std::string& name) const;
   LiveJob* printing_at(const std::string& printer);

@@ -115,17 +115,19 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   const PrinterConfig* printer = config_.printer(job.printer);
   const bool handed_over = printer != nullptr && printer->hands_over();
   if (event.outcome == SendOutcome::kNotStarted) return not_started(job, event);
+  note_told(job);
   if (event.outcome == SendOutcome::kFailed)
-    return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint);
+    return end(job, JobState::kFailed, with_told(job, sentence(event.failure)), event.failure.hint);
   if (event.outcome == SendOutcome::kCancelled) {
     // a printer that did not obey is worth telling
     const bool obeyed = event.failure.fault == Fault::kInterrupted;
     const std::string tail = obeyed ? "" : ": " + sentence(event.failure);
     if (stopping_)
-      return end(job, JobState::kFailed, "the daemon was stopped while printing" + tail,
+      return end(job, JobState::kFailed,
+                 with_told(job, "the daemon was stopped while printing" + tail),
                  "Clear the bed and print again with packmerger jobs again " +
                      std::to_string(job.id) + ".");
-    return end(job, JobState::kCancelled, "cancelled while printing" + tail,
+    return end(job, JobState::kCancelled, with_told(job, "cancelled while printing" + tail),
                obeyed ? "" : event.failure.hint);
   }
   if (handed_over) return end(job, JobState::kHandedOver, "", "", event.note);

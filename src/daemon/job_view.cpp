@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.h"
 #include "daemon/find_port.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
@@ -42,9 +43,12 @@ std::string sending_text(const JobRecord& job, const LiveJob* live) {
   if (live == nullptr) return "sending";
   const std::string tray =
       job.trays > 1 ? fmt::format("tray {} of {}, ", job.next_tray, job.trays) : "";
-  return fmt::format("{}{} {:.0f} %{}", tray, print_state_name(live->print.state),
-                     100 * fraction_of(live->print),
-                     live->print.text.empty() ? "" : ", " + live->print.text);
+  std::string text = fmt::format("{}{} {:.0f} %", tray, print_state_name(live->print.state),
+                                 100 * fraction_of(live->print));
+  if (!live->print.text.empty()) text += ", " + live->print.text;
+  if (live->print.remaining_s && live->print.done > 0)
+    text += ", " + duration_text(*live->print.remaining_s) + " left";
+  return text;
 }
 
 // One short phrase for people: what the job does or waits for.
@@ -75,6 +79,15 @@ std::string status_text(const Foreman& foreman, const JobRecord& job) {
   return {};
 }
 
+json heaters_view(const PrintReport& print) {
+  json heaters = json::array();
+  for (const HeaterReport& heater : print.heaters)
+    heaters.push_back({{"name", heater.name},
+                       {"actual_c", heater.actual_c},
+                       {"target_c", heater.target_c ? json(*heater.target_c) : json()}});
+  return heaters;
+}
+
 json print_view(const LiveJob* live) {
   if (live == nullptr || !live->control) return nullptr;
   return {{"stage", print_state_name(live->print.state)},
@@ -82,7 +95,10 @@ json print_view(const LiveJob* live) {
           {"done", live->print.done},
           {"total", live->print.total},
           {"text", live->print.text},
-          {"choices", live->print.choices}};
+          {"choices", live->print.choices},
+          {"heaters", heaters_view(live->print)},
+          {"elapsed_s", live->print.elapsed_s},
+          {"remaining_s", live->print.remaining_s ? json(*live->print.remaining_s) : json()}};
 }
 
 json progress_view(const JobRecord& job, const LiveJob* live) {
@@ -142,27 +158,29 @@ Waits waits_for(const Foreman& foreman, const JobRecord& job) {
 
 json job_view(const Foreman& foreman, const JobRecord& job) {
   const std::string_view waits = waits_name(waits_for(foreman, job));
-  return {{"id", job.id},
-          {"printer", job.printer},
-          {"name", job.name},
-          {"sha256", job.sha256},
-          {"state", state_name(job.state)},
-          {"held", job.held},
-          {"waits_for", waits.empty() ? json() : json(waits)},
-          {"status", status_text(foreman, job)},
-          {"progress", progress_view(job, foreman.live(job.id))},
-          {"trays", job.trays},
-          {"tray", job.next_tray},
-          {"pays", job.pays},
-          {"estimates", estimates_view(job)},
-          {"reason", job.reason},
-          {"hint", job.hint},
-          {"folder", job.trays > 0 ? job.folder : ""},
-          {"filed", job.filing_done ? job.filed : ""},
-          {"again_of", job.again_of == 0 ? json() : json(job.again_of)},
-          {"received_s", or_null(job.received_s)},
-          {"sending_s", or_null(job.sending_s)},
-          {"ended_s", or_null(job.ended_s)}};
+  return {
+      {"id", job.id},
+      {"printer", job.printer},
+      {"name", job.name},
+      {"sha256", job.sha256},
+      {"state", state_name(job.state)},
+      {"held", job.held},
+      {"waits_for", waits.empty() ? json() : json(waits)},
+      {"status", status_text(foreman, job)},
+      {"progress", progress_view(job, foreman.live(job.id))},
+      {"trays", job.trays},
+      {"tray", job.next_tray},
+      {"pays", job.pays},
+      {"estimates", estimates_view(job)},
+      {"reason", job.reason},
+      {"hint", job.hint},
+      {"told", job.told_total == 0 ? json() : json{{"done", job.told}, {"total", job.told_total}}},
+      {"folder", job.trays > 0 ? job.folder : ""},
+      {"filed", job.filing_done ? job.filed : ""},
+      {"again_of", job.again_of == 0 ? json() : json(job.again_of)},
+      {"received_s", or_null(job.received_s)},
+      {"sending_s", or_null(job.sending_s)},
+      {"ended_s", or_null(job.ended_s)}};
 }
 
 json job_view_with_history(const Foreman& foreman, const JobRecord& job) {

@@ -53,7 +53,8 @@ struct SendOrder {
   std::int64_t job = 0;
   std::filesystem::path folder;  // the prepared job folder
   int tray = 1;
-  std::string handoff_name;  // of the folder that is handed over
+  std::string handoff_name;         // of the folder that is handed over
+  std::filesystem::path told_file;  // where it is kept how far the printer was told to go
   std::shared_ptr<PrintControl> control;
 };
 

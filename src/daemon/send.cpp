@@ -6,6 +6,7 @@
 #include "daemon/find_port.h"
 #include "daemon/job_folder.h"
 #include "daemon/move_file.h"
+#include "daemon/progress_file.h"
 #include "firmware_io/gcode_link.h"
 #include "firmware_io/port.h"
 #include "firmware_io/s3g_link.h"
@@ -43,7 +44,7 @@ bool holds_same_report(const fs::path& folder, const fs::path& job_folder) {
 }  // namespace
 
 void send_tray(const fs::path& job_folder, int tray, const std::string& port,
-               const PrintListener& listener, PrintControl& control) {
+               const fs::path& told_file, const PrintListener& listener, PrintControl& control) {
   const PreparedJob job = read_prepared(job_folder);
   const Profile profile = read_prepared_profile(job_folder);
   if (profile.dialect == Dialect::kHandoff)
@@ -52,7 +53,11 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
   if (tray < 1 || tray > job.trays)
     throw Error(Fault::kNoInput, fmt::format("The job has no tray {}", tray),
                 fmt::format("It has {}; name one of them with --tray.", job.trays));
-  const StreamOptions options = stream_options(profile, job, tray);
+  StreamOptions options = stream_options(profile, job, tray);
+  ProgressFile told(told_file);
+  options.on_acknowledged = [&](std::size_t done, std::size_t total) {
+    told.acknowledged(done, total);
+  };
   if (profile.dialect == Dialect::kUsb) {
     const UsbDevice device = find_usb_printer(connected_devices().usb, port, profile.link.usb_ids);
     const fs::path document =

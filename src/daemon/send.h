@@ -19,10 +19,12 @@ namespace packmerger {
 //   Error{kUsage}        the printer of this profile takes no job by wire;
 //   Error{kUnavailable}  no such port, nobody answers, or another printer is there;
 //   Error{kBusy}         the port or the printer is in use;
+//   Error{kCannotWrite}  told_file;
 //   Error{kIo}           the print failed; Error{kInterrupted} cancelled and stopped.
 // kUnavailable and kBusy are thrown before anything was printed.
+// told_file says from the first line on how far the printer was told to go (progress_file.h).
 void send_tray(const fs::path& job_folder, int tray, const std::string& port,
-               const PrintListener& listener, PrintControl& control);
+               const fs::path& told_file, const PrintListener& listener, PrintControl& control);
 
 // Puts the profile's document of every tray, job.json and preview.png into `to/name`: through a
 // temporary name, fsync and rename, so that the folder is whole or absent. Returns its path.

@@ -23,7 +23,7 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
       const fs::path target = hand_over(order.folder, printer.handoff_folder, order.handoff_name);
       return {order.job, SendOutcome::kDone, {}, "handed over in " + target.string()};
     }
-    send_tray(order.folder, order.tray, printer.port, listener, *order.control);
+    send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control);
     return {order.job, SendOutcome::kDone, {}, ""};
   } catch (const Error& error) {
     return {order.job,

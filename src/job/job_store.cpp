@@ -19,7 +19,7 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::int64_t kSchema = 1;
+constexpr std::int64_t kSchema = 2;
 
 constexpr const char* kMakeTables = R"(
 CREATE TABLE job (
@@ -42,10 +42,16 @@ CREATE TABLE printer (
 PRAGMA user_version = 1;
 )";
 
+constexpr const char* kAddTold = R"(
+ALTER TABLE job ADD COLUMN told INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN told_total INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 2;
+)";
 constexpr std::string_view kColumns =
     "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
     "next_tray, pays, "
-    "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s";
+    "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
+    "told, told_total";
 
 std::string select(std::string_view condition) {
   return "SELECT id, " + std::string(kColumns) + " FROM job " + std::string(condition);
@@ -64,6 +70,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(flag(job.pays)).bind(job.estimates).bind(job.reason).bind(job.hint);
   statement.bind(job.filed).bind(flag(job.filing_done)).bind(job.again_of);
   statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
+  statement.bind(job.told).bind(job.told_total);
 }
 
 JobState read_state(Statement& row) {
@@ -98,6 +105,8 @@ JobRecord read_job(Statement& row) {
   job.received_s = row.real();
   job.sending_s = row.real();
   job.ended_s = row.real();
+  job.told = row.integer();
+  job.told_total = row.integer();
   return job;
 }
 
@@ -139,7 +148,8 @@ JobStore::JobStore(const std::filesystem::path& file)
   if (found > kSchema)
     throw Error(Fault::kIo, file.string() + " was written by a newer PackMerger",
                 "Install that version again, or name another state folder.");
-  if (found == 0) connection.run(kMakeTables);
+  if (found < 1) connection.run(kMakeTables);
+  if (found < 2) connection.run(kAddTold);
   transaction.commit();
 }
 
@@ -151,7 +161,7 @@ JobRecord JobStore::add(JobRecord job) {
   Connection& connection = database_->connection;
   Transaction transaction(connection);
   Statement statement(connection, "INSERT INTO job (" + std::string(kColumns) +
-                                      ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+                                      ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
   bind_job(statement, job);
   statement.finish();
   job.id = sqlite3_last_insert_rowid(connection.get());
@@ -169,7 +179,7 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
     forbidden(job, before ? state_name(before->state) : "nothing");
   Statement statement(connection,
                       "UPDATE job SET (" + std::string(kColumns) +
-                          ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
+                          ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
   bind_job(statement, job);
   statement.bind(job.id).finish();
   if (before->state != job.state || !note.empty()) write_event(connection, job, note);

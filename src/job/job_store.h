@@ -40,9 +40,11 @@ struct JobRecord {
   std::string filed;          // where the file ended, below done/ or failed/; empty until chosen
   bool filing_done = false;   // the file and the note beside it are there
   std::int64_t again_of = 0;  // the job whose program or file this one uses again; 0: none
-  double received_s = 0;      // Unix time
-  double sending_s = 0;       // when the first tray began; 0: not yet
-  double ended_s = 0;         // 0: not yet
+  std::int64_t told = 0;      // of the tray sent last: lines or bytes that the printer acknowledged
+  std::int64_t told_total = 0;  // of so many; 0: not known
+  double received_s = 0;        // Unix time
+  double sending_s = 0;         // when the first tray began; 0: not yet
+  double ended_s = 0;           // 0: not yet
 };
 
 struct PrinterRecord {

@@ -89,9 +89,9 @@ std::string program_of(Machine machine, std::size_t moves) {
 }
 
 std::vector<std::string> executed_by_marlin(std::size_t commands) {
-  std::vector<std::string> lines = {"M115", "M27", "M110 N0"};
+  std::vector<std::string> lines = {"M115", "M27", "M110 N0", "M155 S2"};
   for (const std::string& line : gcode_program(commands)) lines.push_back(line);
-  lines.insert(lines.end(), {"M400", "M114"});
+  lines.insert(lines.end(), {"M400", "M114", "M155 S0"});
   return lines;
 }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/progress_file.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -286,6 +287,20 @@ TEST(Foreman, APrintStoppedAtOnceFails) {
   shop.tell(SendEnded{1, SendOutcome::kFailed, {Fault::kIo, "stopped", "Look."}, ""});
   EXPECT_EQ(shop.job(1).state, JobState::kFailed);
   EXPECT_EQ(shop.ask(stop).at("error").at("fault"), 2);
+}
+
+// Its sender wrote down what the printer acknowledged.
+TEST(Foreman, AfterAKillTheRecordSaysHowFarThePrinterWasTold) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  const SendOrder send = shop.send_order("sim").value();
+  ProgressFile(send.told_file).acknowledged(120, 300);
+  shop.start();
+  EXPECT_EQ(shop.job(1).state, JobState::kFailed);
+  EXPECT_EQ(shop.job(1).reason, "interrupted while printing, told up to line 120 of 300 (40 %)");
+  EXPECT_EQ(shop.view(1).at("told"), (json{{"done", 120}, {"total", 300}}));
+  EXPECT_FALSE(shop.send_order("sim")) << "nothing is resumed by itself";
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST(SendTray, RefusesBeforeItOpensAnything) {
   const TemporaryFolder folder;
   PrintControl control;
   const auto send = [&](const fs::path& job, int tray, const std::string& port) {
-    return fault_of([&] { send_tray(job, tray, port, {}, control); });
+    return fault_of([&] { send_tray(job, tray, port, job / "sent.progress", {}, control); });
   };
   make_job(folder.path() / "wire", "marlin");
   make_job(folder.path() / "folder", "uprint");

@@ -73,6 +73,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.filed = "/done/x";
     job.again_of = 7;
     job.sending_s = 2.5;
+    job.told = 120;
+    job.told_total = 300;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -87,9 +89,30 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.again_of, 7);
   EXPECT_EQ(back.estimates, job.estimates);
   EXPECT_EQ(back.sending_s, 2.5);
+  EXPECT_EQ(back.told, 120);
+  EXPECT_EQ(back.told_total, 300);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
+}
+
+// Takes the columns away that version 1 did not have.
+TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "jobs.sqlite";
+  const std::int64_t id = JobStore(file).add(sample()).id;
+  sqlite3* raw = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(raw,
+                         "ALTER TABLE job DROP COLUMN told; ALTER TABLE job DROP COLUMN told_total;"
+                         "PRAGMA user_version = 1",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(raw);
+  JobStore store(file);
+  const JobRecord back = store.find(id).value();
+  EXPECT_EQ(back.name, sample().name);
+  EXPECT_EQ(back.told_total, 0);
 }
 
 TEST(JobStore, AcceptsExactlyTheAllowedSteps) {

@@ -1,0 +1,42 @@
+// How long a print will still take, learned from what was printed so far.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace packmerger {
+
+struct GcodeCommand;
+
+// The program's own idea of its time: after `done` lines or bytes, expected_s seconds have passed.
+struct TimeMark {
+  std::size_t done = 0;
+  double expected_s = 0;
+};
+
+// From the slicer's marks (M73 R, minutes left) where the program has them, otherwise from the
+// lengths and speeds of its moves and its dwells; heating and homing count nothing. done: commands.
+std::vector<TimeMark> time_marks(const std::vector<GcodeCommand>& commands);
+
+// From the moves and delays of an x3g program. done: counted[i] with action i.
+std::vector<TimeMark> time_marks(const std::vector<std::string_view>& actions,
+                                 const std::vector<std::size_t>& counted);
+
+class RemainingTime {
+ public:
+  explicit RemainingTime(std::vector<TimeMark> marks);  // ascending
+
+  // printed_s: spent printing, pauses and heating not counted. The ratio to what was expected so
+  // far is taken for the rest too; in the beginning the expectation counts for more. Nothing where
+  // the program tells no time.
+  std::optional<double> remaining_s(std::size_t done, double printed_s) const;
+
+ private:
+  double expected_s(std::size_t done) const;
+
+  std::vector<TimeMark> marks_;
+};
+
+}  // namespace packmerger

@@ -1,0 +1,71 @@
+#include "daemon/progress_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace packmerger {
+
+namespace {
+
+// Every record has the same length, so that a new one covers the old one whole.
+std::string record_of(const Told& told) {
+  return fmt::format("acknowledged {:012} of {:012}\n", told.done, told.total);
+}
+
+constexpr std::uint64_t kMostBytes = 4096;
+
+}  // namespace
+
+// What is there stays until the first record covers it.
+ProgressFile::ProgressFile(fs::path path)
+    : path_(std::move(path)), fd_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644)) {
+  if (fd_.get() < 0) fail();
+}
+
+void ProgressFile::acknowledged(std::size_t done, std::size_t total) {
+  if (done != written_.done || total != written_.total) {
+    written_ = {done, total};
+    const std::string record = record_of(written_);
+    if (::pwrite(fd_.get(), record.data(), record.size(), 0) != static_cast<ssize_t>(record.size()))
+      fail();
+    synced_ = false;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (synced_ || now - synced_at_ < std::chrono::seconds(1)) return;
+  if (::fdatasync(fd_.get()) != 0) fail();
+  synced_ = true;
+  synced_at_ = now;
+}
+
+void ProgressFile::fail() const {
+  throw Error(
+      Fault::kCannotWrite,
+      "Cannot write how far the print is to " + path_.string() + ": " + std::strerror(errno),
+      "Make the folder writable and see that its disk is not full.");
+}
+
+std::optional<Told> read_told(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  Told told;
+  const std::string text = read_file(path, kMostBytes);
+  if (std::sscanf(text.c_str(), "acknowledged %zu of %zu", &told.done, &told.total) != 2)
+    return std::nullopt;
+  return told;
+}
+
+std::string told_text(const Told& told, std::string_view unit) {
+  const double percent =
+      told.total == 0 ? 0
+                      : 100.0 * static_cast<double>(told.done) / static_cast<double>(told.total);
+  return fmt::format("{} {} of {} ({:.0f} %)", unit, told.done, told.total, percent);
+}
+
+}  // namespace packmerger

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""send as a person uses it: at a terminal with Ctrl-C, without one, and killed in the middle."""
+import json
+import os
+import pathlib
+import pty
+import re
+import select
+import signal
+import subprocess
+import tempfile
+import termios
+import time
+import tty
+import unittest
+
+import program
+
+PATIENCE_S = 60
+
+
+def write_job(folder, lines):
+    folder.mkdir()
+    profile = (program.SOURCE / "profiles" / "marlin.toml").read_text()
+    (folder / "profile.toml").write_text(profile.replace("boot_wait_s = 2", "boot_wait_s = 0.1"))
+    (folder / "program.gcode").write_text("\n".join(lines) + "\n")
+    (folder / "job.json").write_text(json.dumps({
+        "version": 1, "inputs": [{"file": "model.stl", "sha256": "0"}], "parts": [{"tray": 1}],
+        "variant": "packed", "estimates": {}}))
+    return folder
+
+
+def moves(count):
+    """60 mm at 60 mm/s each."""
+    return [f"G1 X{60 * (i % 2)} F3600 ; {i}" for i in range(1, count + 1)]
+
+
+class Sending(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.folder = pathlib.Path(place.name)
+
+    def start(self, argv, **options):
+        child = subprocess.Popen([program.binary(), *map(str, argv)], start_new_session=True, **options)
+        self.addCleanup(lambda: (child.poll() is None and child.kill(), child.wait()))
+        return child
+
+    def simulated(self):
+        record = self.folder / "record.txt"
+        printer = self.start(["simulate", "marlin", "--record", record], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(printer.stdout.close)
+        return printer.stdout.readline().strip(), record
+
+    def wait_for(self, holds, what):
+        end = time.monotonic() + PATIENCE_S
+        while not holds():
+            self.assertLess(time.monotonic(), end, what)
+            time.sleep(0.05)
+
+    def at_terminal(self, job, port):
+        """send with a terminal of its own; returns it, a reader of what it shows, and a way to type."""
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        child = self.start(["send", job, "--port", port], stdin=slave, stdout=slave, stderr=slave,
+                           preexec_fn=lambda: os.set_inheritable(slave, True))
+        os.close(slave)
+        shown = bytearray()
+
+        def shows(text):
+            while select.select([master], [], [], 0)[0]:
+                try:
+                    shown.extend(os.read(master, 4096))
+                except OSError:
+                    break
+            return text in shown.decode(errors="replace")
+
+        return child, shows, lambda text: os.write(master, text.encode())
+
+    def test_ctrl_c_pauses_and_asks_then_cancels(self):
+        job = write_job(self.folder / "job", moves(500))
+        port, record = self.simulated()
+        child, shows, write = self.at_terminal(job, port)
+        self.wait_for(lambda: shows("printing, 1"), "it prints")
+        self.assertTrue(shows(" left"), "and says how long it will take")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: shows("g: go on, c: cancel, s: stop at once?"), "it asks")
+        self.wait_for(lambda: "M400" in record.read_text(), "it pauses")
+        write("g\n")
+        printed = record.read_text().count("G1")
+        self.wait_for(lambda: record.read_text().count("G1") > printed + 2, "it goes on")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: record.read_text().count("M400") == 2, "it pauses again")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: child.poll() is not None, "it ends")
+        self.assertEqual(child.returncode, 130)
+        self.assertTrue(shows("Cancelling"))
+        executed = record.read_text().splitlines()
+        self.assertEqual(executed.count("M140 S0"), 1, "heaters off")
+        self.assertLess(executed.count("G1 X60 F3600"), 250)
+
+    def test_stop_at_once(self):
+        job = write_job(self.folder / "job", moves(500))
+        port, record = self.simulated()
+        child, shows, write = self.at_terminal(job, port)
+        self.wait_for(lambda: shows("printing, 1"), "it prints")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: shows("s: stop at once?"), "it asks")
+        write("s\n")
+        self.wait_for(lambda: child.poll() is not None, "it ends")
+        self.assertEqual(child.returncode, 74)
+        self.wait_for(lambda: record.read_text().endswith("halt\n"), "the printer has halted")
+
+    def test_without_a_terminal_the_first_cancels(self):
+        job = write_job(self.folder / "job", moves(500))
+        port, record = self.simulated()
+        child = self.start(["send", job, "--port", port], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.addCleanup(child.stderr.close)
+        self.wait_for(lambda: "G1" in record.read_text(), "it prints")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: child.poll() is not None, "it ends")
+        self.assertEqual(child.returncode, 130)
+        self.assertEqual(record.read_text().splitlines().count("M140 S0"), 1, "heaters off")
+
+    def test_killed_send_leaves_what_was_acknowledged(self):
+        """This printer takes exactly 23 lines of the program and then says nothing."""
+        job = write_job(self.folder / "job", moves(100))
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        self.addCleanup(os.close, slave)
+        tty.setraw(slave, termios.TCSANOW)
+        child = self.start(["send", job, "--port", os.ttyname(slave)], stdin=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
+        heard, acknowledged, end = b"", 0, time.monotonic() + PATIENCE_S
+        while acknowledged < 23 or b"N24 " not in heard:
+            self.assertLess(time.monotonic(), end)
+            if not select.select([master], [], [], 0.1)[0]:
+                continue
+            heard += os.read(master, 4096)
+            *lines, heard = heard.split(b"\n")
+            for line in lines:
+                number = re.match(rb"N([1-9]\d*) ", line)
+                if number and acknowledged >= 23:
+                    heard = line  # the one that is not answered
+                    break
+                acknowledged += 1 if number else 0
+                os.write(master, b"FIRMWARE_NAME:Fake\nok\n" if line == b"M115" else line and b"ok\n")
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+        self.assertEqual((job / "sent-1.progress").read_text(), "acknowledged 000000000023 of 000000000100\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
