@@ -6,7 +6,6 @@
 
 #include "daemon/job_view.h"
 #include "daemon/move_file.h"
-#include "daemon/progress_file.h"
 
 namespace packmerger {
 namespace {
@@ -60,21 +59,6 @@ fs::path Foreman::job_path(std::int64_t id) const {
 
 fs::path Foreman::told_file(const JobRecord& job) const {
   return job_path(job.id) / ("sent-" + std::to_string(job.next_tray) + ".progress");
-}
-
-// How far the tray's print was told to go, as its sender wrote it down.
-void Foreman::note_told(JobRecord& job) const {
-  const Told told = read_told(told_file(job)).value_or(Told{});
-  job.told = static_cast<std::int64_t>(told.done);
-  job.told_total = static_cast<std::int64_t>(told.total);
-}
-
-std::string Foreman::with_told(const JobRecord& job, const std::string& reason) const {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  if (job.told_total == 0 || printer == nullptr) return reason;
-  const bool is_gcode = printer->abilities.dialect == Dialect::kGcode;
-  const Told told{static_cast<std::size_t>(job.told), static_cast<std::size_t>(job.told_total)};
-  return reason + ", told up to " + told_text(told, is_gcode ? "line" : "byte");
 }
 
 void Foreman::say(const JobRecord& job, const std::string& text) const {

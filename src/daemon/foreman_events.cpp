@@ -3,6 +3,7 @@
 
 #include "daemon/foreman.h"
 #include "daemon/move_file.h"
+#include "daemon/progress_file.h"
 
 namespace packmerger {
 namespace {
@@ -109,6 +110,21 @@ void Foreman::on(const SendEnded& event) {
   live_[event.job].control.reset();
   live_[event.job].print = {};
   sending_.erase(job->printer);
+}
+
+// How far the tray's print was told to go, as its sender wrote it down.
+void Foreman::note_told(JobRecord& job) const {
+  const Told told = read_told(told_file(job)).value_or(Told{});
+  job.told = static_cast<std::int64_t>(told.done);
+  job.told_total = static_cast<std::int64_t>(told.total);
+}
+
+std::string Foreman::with_told(const JobRecord& job, const std::string& reason) const {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (job.told_total == 0 || printer == nullptr) return reason;
+  const bool is_gcode = printer->abilities.dialect == Dialect::kGcode;
+  const Told told{static_cast<std::size_t>(job.told), static_cast<std::size_t>(job.told_total)};
+  return reason + ", told up to " + told_text(told, is_gcode ? "line" : "byte");
 }
 
 void Foreman::sent(JobRecord job, const SendEnded& event) {
