@@ -11,6 +11,9 @@ void add_cuts(CLI::App& program);
 // The packer's inner loops against plain loops, OSMesa and the least they have to do.
 void add_kernels(CLI::App& program);
 
+// How near the links come to what a serial line allows, and what they cost the processor.
+void add_link(CLI::App& program);
+
 // The packer against the paper's: how many times faster, at the same answers.
 void add_pack(CLI::App& program);
 

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   packmerger::bench::add_cuts(program);
   packmerger::bench::add_kernels(program);
+  packmerger::bench::add_link(program);
   packmerger::bench::add_many(program);
   packmerger::bench::add_mixed(program);
   packmerger::bench::add_nested(program);
