@@ -17,7 +17,7 @@
 namespace packmerger {
 namespace {
 
-constexpr std::size_t kMostPlans = 3;  // that are cut and packed
+constexpr std::size_t kMostPlans = 4;  // that are cut and packed
 constexpr double kAboutEqual = 0.02;   // of the least packed cost
 constexpr double kLeastPrice = 0.005;  // of V_o: what a part more must save in support at least
 constexpr double kMostPrice = 0.05;    // and at most
@@ -79,7 +79,9 @@ std::vector<Candidate> candidates_of(const Divided& whole, const Profile& profil
                                      std::uint64_t seed, const Progress& progress) {
   CutSearch search;
   search.support_angle = radians(profile.support_angle_deg);
-  search.part_price_mm3 = part_price_mm3(profile, total_volume_mm3(whole.tets));
+  const double volume_mm3 = total_volume_mm3(whole.tets);
+  search.part_price_mm3 = part_price_mm3(profile, volume_mm3);
+  search.least_price_mm3 = kLeastPrice * volume_mm3;
   std::vector<CutPlan> plans =
       cut_plans(whole.tets, profile.shape, build_volume(profile), search, seed, progress);
   plans.resize(std::min(plans.size(), kMostPlans));

@@ -57,12 +57,14 @@ std::vector<int> random_group(const MatterSamples& samples, const CutState& stat
 struct Chain {
   Start start;
   int most_parts;
+  double part_price_mm3;
 };
 
 // Large neighbourhood search from one start. A slightly worse division is accepted now and then,
 // less and less.
-Start improved(const MatterSamples& samples, const CutRules& rules, const FitTest& fit,
-               const Chain& chain, int tries, Random random, const Progress& progress) {
+Start improved(const MatterSamples& samples, CutRules rules, const FitTest& fit, const Chain& chain,
+               int tries, Random random, const Progress& progress) {
+  rules.part_price_mm3 = chain.part_price_mm3;
   CutBench bench(samples, rules, fit);
   CutState current = chain.start.state;
   CutState best = current;
@@ -111,12 +113,12 @@ std::vector<Chain> chains_from(const std::vector<Start>& starts, const CutRules&
   std::vector<std::string> taken;
   while (const auto index = cheapest(starts, rules, rules.most_parts, taken)) {
     taken.push_back(starts[*index].construction);
-    chains.push_back({starts[*index], rules.most_parts});
+    chains.push_back({starts[*index], rules.most_parts, rules.part_price_mm3});
   }
   for (const double share : {0.8, 0.6}) {
     const int fewer = static_cast<int>(share * rules.most_parts);
     if (const auto index = cheapest(starts, rules, fewer, {}))
-      chains.push_back({starts[*index], fewer});
+      chains.push_back({starts[*index], fewer, rules.part_price_mm3});
   }
   return chains;
 }
@@ -139,7 +141,12 @@ std::vector<CutPlan> cut_plans(const TetMesh& mesh, const ShapeSettings& setting
 
   const std::vector<Start> starts = cut_starts(*samples, rules, fit, seed, progress);
   progress.report("planning cuts", 0.4);
-  const std::vector<Chain> chains = chains_from(starts, rules);
+  std::vector<Chain> chains = chains_from(starts, rules);
+  CutRules many = rules;
+  many.part_price_mm3 = search.least_price_mm3;
+  const auto of_many = cheapest(starts, many, rules.most_parts, {});
+  const bool seeks_many = of_many && search.least_price_mm3 < search.part_price_mm3;
+  if (seeks_many) chains.push_back({starts[*of_many], rules.most_parts, search.least_price_mm3});
   std::vector<Start> found(chains.size());
   parallel_tasks(chains.size(), [&](std::size_t i) {
     const int tries = search.effort / static_cast<int>(chains.size());
@@ -147,9 +154,12 @@ std::vector<CutPlan> cut_plans(const TetMesh& mesh, const ShapeSettings& setting
         improved(*samples, rules, fit, chains[i], tries, Random(seed + 1000 * (i + 1)), progress);
   });
 
-  std::stable_sort(found.begin(), found.end(), [&](const Start& a, const Start& b) {
+  const auto ranked_end = found.end() - (seeks_many ? 1 : 0);
+  std::stable_sort(found.begin(), ranked_end, [&](const Start& a, const Start& b) {
     return cost_of(a.state, rules) < cost_of(b.state, rules);
   });
+  // The division of many parts is told second, whatever it costs here.
+  if (seeks_many && found.size() > 2) std::rotate(found.begin() + 1, ranked_end, found.end());
   std::vector<CutPlan> plans;
   for (Start& one : found) {
     const double support = one.state.support_mm3();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,8 +19,10 @@ namespace packmerger {
 struct CutSearch {
   double support_angle = 0;   // radians; V_s is judged for it
   double part_price_mm3 = 0;  // a part more must save this much support
-  int effort = 1000;          // changes tried, over all candidates
-  int samples = 15000;        // about so many points stand for the matter
+  // or only this much, in one further plan; none where it is no lower
+  double least_price_mm3 = std::numeric_limits<double>::infinity();
+  int effort = 1000;    // changes tried, over all candidates
+  int samples = 15000;  // about so many points stand for the matter
 };
 
 struct CutHistory;  // how to repeat it exactly
@@ -32,7 +35,8 @@ struct CutPlan {
 };
 
 // Several divisions of the mesh, different in construction or number of parts, best first by
-// support and price of parts. As far as samples of the matter tell, none has more than
+// support and price of parts; the second has more parts, at the lower price, since low parts save
+// time that standing alone does not tell. As far as samples of the matter tell, none has more than
 // settings.parts parts, a part below settings.min_volume_fraction of V_o, a joint below
 // settings.min_glue_area_mm2, a part that fits `build` in none of the packer's rotations, or a
 // cavity with one part all round it. A tail thinner than the samples' spacing may escape them:

@@ -42,7 +42,7 @@ TEST(LayerExtents, Box) {
 }
 
 TEST(LayerExtents, AreThoseOfTheOutlines) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const double height_mm = *rc::gen::inRange(10, 60);
     Mesh mesh = closed_mesh(fixtures::blob(height_mm, 3));
     const Vec3 axis = Vec3(*rc::gen::inRange(-5, 6), *rc::gen::inRange(-5, 6), 1).normalized();
@@ -63,7 +63,7 @@ TEST(LayerExtents, AreThoseOfTheOutlines) {
       RC_ASSERT((found[i].min() - outlines.min()).norm() < 1e-9);
       RC_ASSERT((found[i].max() - outlines.max()).norm() < 1e-9);
     }
-  });
+  }));
 }
 
 TEST(LayerExtents, IncludeSupport) {

@@ -235,6 +235,18 @@ TEST(CutPlans, ManyPartsAreNotMadeWhereTheySaveLittle) {
     EXPECT_LE(plan.parts, 8);
 }
 
+TEST(CutPlans, OnePlanIsOfTheManyPartsThatALowerPriceAllows) {
+  const TetMesh mesh = fixtures::sphere_shell(3, 3, 40, 4);
+  ShapeSettings settings;
+  settings.parts = 10;
+  CutSearch search = brief(total_volume_mm3(mesh) / 20);
+  search.least_price_mm3 = total_volume_mm3(mesh) / 1000;
+  const std::vector<CutPlan> plans = cut_plans(mesh, settings, kHuge, search, 1, {});
+  ASSERT_GE(plans.size(), 2U);
+  EXPECT_GT(plans[1].parts, plans[0].parts);
+  EXPECT_LT(plans[1].support_mm3, plans[0].support_mm3);
+}
+
 TEST(CutPlans, SomePlanFitsASmallPrinter) {
   const TetMesh mesh = fixtures::sphere_shell(4, 2, 80, 3);
   const BuildVolume build{Vec3(70, 70, 40), radians(90)};
