@@ -209,4 +209,14 @@ std::filesystem::path program_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
+std::filesystem::path helper_program(const std::string& name) {
+  const std::filesystem::path beside = program_folder() / name;
+  const std::filesystem::path installed =
+      program_folder().parent_path() / "lib" / "packmerger" / name;
+  std::error_code ignored;
+  const bool only_installed =
+      !std::filesystem::exists(beside, ignored) && std::filesystem::exists(installed, ignored);
+  return only_installed ? installed : beside;
+}
+
 }  // namespace packmerger

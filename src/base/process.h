@@ -73,7 +73,11 @@ ProcessResult run_process(const ProcessSpec& spec, double timeout_s, const Progr
                           const std::function<void(std::string_view)>& on_err_line = {},
                           std::size_t max_output = std::size_t{16} << 20);
 
-// The folder the running program lies in: helpers of ours are installed beside it.
+// The folder the running program lies in.
 std::filesystem::path program_folder();
+
+// A helper of ours that no person runs: beside the running program, or in ../lib/packmerger where
+// it is installed. Beside the program where it is in neither.
+std::filesystem::path helper_program(const std::string& name);
 
 }  // namespace packmerger

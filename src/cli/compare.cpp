@@ -47,6 +47,7 @@ void add_compare(CLI::App& program) {
       "compare", "Compares the ways of printing: as the file stands, solid, hollow, packed");
   add_plan_options(*verb, arguments->plan);
   verb->add_option("--profile", arguments->profiles, "a profile's id or path; may be given again")
+      ->type_name("PROFILE")
       ->required()
       ->take_all();
   verb->add_flag("--json", arguments->json, "prints {profile id: estimates}");

@@ -1,6 +1,4 @@
 // packmerger VERB …: parses the command line, runs one verb, and turns an Error into its exit code.
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -20,20 +18,8 @@ int report(const Error& error) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program(
-      "Prepares a 3D model for one given printer: hollows it, divides it into parts, "
-      "packs them on the tray, compares, and sends the job.");
-  program.require_subcommand(1);
-  program.set_version_flag("--version", "packmerger " PACKMERGER_VERSION);
-  packmerger::cli::add_prepare(program);
-  packmerger::cli::add_compare(program);
-  packmerger::cli::add_send(program);
-  packmerger::cli::add_profiles(program);
-  packmerger::cli::add_devices(program);
-  packmerger::cli::add_jobs(program);
-  packmerger::cli::add_keys(program);
-  packmerger::cli::add_printers(program);
-  packmerger::cli::add_simulate(program);
+  CLI::App program;
+  packmerger::cli::add_verbs(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version

@@ -46,7 +46,9 @@ void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
   verb.add_option("--budget", arguments.budget_s, "seconds for the packing; 0: until it is done")
       ->check(CLI::NonNegativeNumber & kFinite)
       ->capture_default_str();
-  verb.add_option("--set", arguments.settings, "key=value: any setting of the profile")->take_all();
+  verb.add_option("--set", arguments.settings, "any setting of the profile")
+      ->type_name("KEY=VALUE")
+      ->take_all();
 }
 
 PlanOptions plan_options(const PlanArguments& arguments) {

@@ -57,8 +57,10 @@ void add_prepare(CLI::App& program) {
       "prepare", "Prepares models for a printer: writes a job folder that can be sent");
   add_plan_options(*verb, arguments->plan);
   verb->add_option("--profile", arguments->profile, "a profile's id, or the path of a TOML file")
+      ->type_name("PROFILE")
       ->required();
   verb->add_option("--out", arguments->out, "the job folder to make; it must not exist")
+      ->type_name("FOLDER")
       ->required();
   verb->add_option("--variant", arguments->variant, "what is prepared to be printed")
       ->transform(CLI::CheckedTransformer(kVariants))

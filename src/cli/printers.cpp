@@ -55,6 +55,10 @@ void list(const Arguments& arguments) {
   std::vector<std::vector<std::string>> rows = {kHeading};
   for (const json& printer : printers) rows.push_back(row_of(printer));
   print_table(rows);
+  if (printers.empty())
+    fmt::print(stderr,
+               "No printer is configured: add a table [printer.NAME] to the daemon's settings "
+               "(man 5 packmergerd.toml), and reload it.\n");
 }
 
 void change(const Arguments& arguments, const std::string& verb) {

@@ -98,7 +98,8 @@ void add_simulate(CLI::App& program) {
   verb->add_option("--speed", arguments->speed,
                    "How many times faster than a real printer; 0 or inf: no waiting at all")
       ->capture_default_str();
-  verb->add_option("--record", arguments->record, "A file for every executed command, one a line");
+  verb->add_option("--record", arguments->record, "A file for every executed command, one a line")
+      ->type_name("FILE");
   verb->add_option("--firmware", arguments->firmware,
                    "sailfish; or marlin-2.1 (the usual one of the dialect gcode) or marlin-1.1");
   verb->add_option("--trait", arguments->traits,

@@ -8,6 +8,9 @@
 
 namespace packmerger::cli {
 
+// All verbs, and what the program says of itself.
+void add_verbs(CLI::App& program);
+
 // Each adds one subcommand with its options, --json among them, and its callback.
 void add_prepare(CLI::App& program);
 void add_compare(CLI::App& program);

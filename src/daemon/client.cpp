@@ -23,9 +23,12 @@ using nlohmann::json;
 constexpr time_t kTimeout_s = 10;
 constexpr std::size_t kMaxReplyBytes = std::size_t{64} << 20;
 
-[[noreturn]] void not_there(const std::filesystem::path& socket, const std::string& why) {
-  throw Error(Fault::kUnavailable, "No daemon answers at " + socket.string() + ": " + why,
-              "Start it with packmergerd --config FILE, or name its socket with --socket.");
+constexpr const char* kStartIt =
+    "Start it with packmergerd --config FILE, or name its socket with --socket.";
+
+[[noreturn]] void not_there(const std::filesystem::path& socket, const std::string& why,
+                            const char* hint = kStartIt) {
+  throw Error(Fault::kUnavailable, "No daemon answers at " + socket.string() + ": " + why, hint);
 }
 
 class Connection {
@@ -39,8 +42,11 @@ class Connection {
     const timeval timeout{kTimeout_s, 0};
     ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
     ::setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &timeout, sizeof timeout);
-    if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      fail(std::strerror(errno));
+    if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
+    if (errno == EACCES)
+      fail("you may not speak to it",
+           "Only the daemon's user and its group may (docs/INSTALL.md).");
+    fail(std::strerror(errno));
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -69,9 +75,9 @@ class Connection {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& why) {
+  [[noreturn]] void fail(const std::string& why, const char* hint = kStartIt) {
     ::close(fd_);
-    not_there(path_, why);
+    not_there(path_, why, hint);
   }
 
   std::filesystem::path path_;
@@ -85,7 +91,7 @@ std::filesystem::path default_socket() {
     return given;
   std::error_code ignored;
   const std::filesystem::path own = socket_in(default_state_folder());
-  const std::filesystem::path system = socket_in("/var/lib/packmerger");
+  const std::filesystem::path system = socket_in("/run/packmerger");
   const bool only_system =
       !std::filesystem::exists(own, ignored) && std::filesystem::exists(system, ignored);
   return only_system ? system : own;

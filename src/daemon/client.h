@@ -7,7 +7,7 @@
 namespace packmerger {
 
 // $PACKMERGER_SOCKET, or the socket in the user's own state folder, or, where only that one is
-// there, that of the system's daemon in /var/lib/packmerger.
+// there, that of the system's daemon in /run/packmerger.
 std::filesystem::path default_socket();
 
 // Sends one request and returns the reply's result. Throws Error{kUnavailable} when no daemon

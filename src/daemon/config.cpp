@@ -21,6 +21,11 @@ namespace {
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 constexpr std::size_t kMaxSocketPath = 107;  // sun_path of unix(7), less its final zero
 
+fs::path environment_path(const char* name) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? text : "";
+}
+
 bool is_printer_name(std::string_view text) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -227,28 +232,26 @@ DaemonConfig read_config(const fs::path& file) {
   }
   if (config.state.empty())
     refuse(file, 1, "needs the key state: neither STATE_DIRECTORY nor HOME tells where to keep it");
-  if (config.socket.empty()) config.socket = socket_in(config.state);
+  if (config.socket.empty()) {
+    const fs::path runtime = environment_path("RUNTIME_DIRECTORY");
+    config.socket = socket_in(runtime.is_absolute() ? runtime : config.state);
+  }
   if (config.socket.string().size() > kMaxSocketPath)
     refuse(file, 1, "needs the key socket: " + config.socket.string() + " is too long for one");
   if (const toml::table* printers = table_in(file, table, "printer"))
     read_printers(file, *printers, config);
-  if (config.printers.empty()) refuse(file, 1, "needs at least one table [printer.NAME]");
   return config;
 }
 
 fs::path default_state_folder() {
-  const auto variable = [](const char* name) {
-    const char* text = std::getenv(name);
-    return fs::path(text != nullptr ? text : "");
-  };
-  if (const fs::path given = variable("STATE_DIRECTORY"); given.is_absolute()) return given;
-  if (const fs::path base = variable("XDG_STATE_HOME"); base.is_absolute())
+  if (const fs::path given = environment_path("STATE_DIRECTORY"); given.is_absolute()) return given;
+  if (const fs::path base = environment_path("XDG_STATE_HOME"); base.is_absolute())
     return base / "packmerger";
-  const fs::path home = variable("HOME");
+  const fs::path home = environment_path("HOME");
   return home.is_absolute() ? home / ".local/state/packmerger" : fs::path();
 }
 
-fs::path socket_in(const fs::path& state) { return state / "packmergerd.sock"; }
+fs::path socket_in(const fs::path& folder) { return folder / "packmergerd.sock"; }
 
 std::vector<DaemonKey> daemon_keys() {
   const fs::path file;

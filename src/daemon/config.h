@@ -74,8 +74,8 @@ DaemonConfig read_config(const std::filesystem::path& file);
 // $STATE_DIRECTORY, or packmerger below $XDG_STATE_HOME, or ~/.local/state/packmerger.
 std::filesystem::path default_state_folder();
 
-// The socket's name in a state folder.
-std::filesystem::path socket_in(const std::filesystem::path& state);
+// The socket's name in a folder.
+std::filesystem::path socket_in(const std::filesystem::path& folder);
 
 // One key as docs/DAEMON.md shows it; tables are written as in the file ("prepare.time_s",
 // "printer.NAME.port").

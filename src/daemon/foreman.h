@@ -90,6 +90,7 @@ class Foreman {
   const DaemonConfig& config() const { return config_; }
   const JobStore& store() const { return store_; }
   const LiveJob* live(std::int64_t id) const;
+  std::int64_t preparing() const { return preparing_; }  // the job with the worker; 0: none
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
 

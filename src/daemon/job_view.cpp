@@ -210,6 +210,18 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"print", print_view(foreman.live(sending))}};
 }
 
+std::string daemon_status(const Foreman& foreman) {
+  const std::vector<PrinterConfig>& printers = foreman.config().printers;
+  std::string text = printers.empty() ? "no printer is configured"
+                                      : fmt::format("{} printer{}", printers.size(),
+                                                    printers.size() > 1 ? "s" : "");
+  if (foreman.preparing() != 0) text += fmt::format("; preparing job {}", foreman.preparing());
+  for (const PrinterConfig& printer : printers)
+    if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
+      text += fmt::format("; job {} is at {}", job, printer.name);
+  return text;
+}
+
 std::string result_note(const JobRecord& job) {
   const json note = {{"job", job.id},
                      {"printer", job.printer},

@@ -32,6 +32,9 @@ nlohmann::json job_view(const Foreman& foreman, const JobRecord& job);
 nlohmann::json job_view_with_history(const Foreman& foreman, const JobRecord& job);
 nlohmann::json printer_view(const Foreman& foreman, const PrinterConfig& printer);
 
+// What the daemon does, in a line: "2 printers; preparing job 5; job 4 is at lab".
+std::string daemon_status(const Foreman& foreman);
+
 // The notes beside a filed model.
 std::string result_note(const JobRecord& job);  // JSON
 std::string reason_note(const JobRecord& job);  // for people

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <thread>
@@ -16,7 +17,9 @@
 #include "daemon/api.h"
 #include "daemon/foreman.h"
 #include "daemon/front_desk.h"
+#include "daemon/job_view.h"
 #include "daemon/move_file.h"
+#include "daemon/service_manager.h"
 #include "daemon/socket_server.h"
 #include "daemon/watch_folder.h"
 #include "daemon/worker.h"
@@ -84,27 +87,42 @@ class Signals {
 class Threads {
  public:
   Threads(const DaemonConfig& config, Crew& crew, Queue<Event>& events) : crew_(crew) {
-    threads_.emplace_back([&] { run_worker(crew.worker, events, config.prepare); });
-    threads_.emplace_back([&] { run_clerk(crew.clerk, events); });
+    start([&] { run_worker(crew.worker, events, config.prepare); });
+    start([&] { run_clerk(crew.clerk, events); });
     for (const PrinterConfig& printer : config.printers)
-      threads_.emplace_back([&crew, &events, &printer] {
-        run_sender(crew.senders.at(printer.name), events, printer);
-      });
+      start([&] { run_sender(crew.senders.at(printer.name), events, printer); });
   }
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
-  ~Threads() { finish(); }
+  ~Threads() {
+    finish([] {});
+  }
 
-  void finish() {
+  // meanwhile is called again and again until the last has ended.
+  void finish(const std::function<void()>& meanwhile) {
     crew_.worker.close();
     crew_.clerk.close();
     for (auto& [name, orders] : crew_.senders) orders.close();
+    while (running_ > 0) {
+      meanwhile();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
     for (std::thread& thread : threads_)
       if (thread.joinable()) thread.join();
   }
 
  private:
+  template <typename Work>
+  void start(Work work) {
+    ++running_;
+    threads_.emplace_back([this, work] {
+      work();
+      --running_;
+    });
+  }
+
   Crew& crew_;
+  std::atomic<int> running_{0};
   std::vector<std::thread> threads_;
 };
 
@@ -119,12 +137,13 @@ struct Watch {
 class Loop {
  public:
   Loop(const DaemonConfig& config, Foreman& foreman, Queue<Event>& events, SocketServer& server,
-       FrontDesk& desk, const Log& log)
+       FrontDesk& desk, ServiceManager& manager, const Log& log)
       : config_(config),
         foreman_(foreman),
         events_(events),
         server_(server),
         desk_(desk),
+        manager_(manager),
         log_(log) {
     for (const PrinterConfig& printer : config.printers) watches_.push_back({&printer, {}, 0, {}});
   }
@@ -142,6 +161,8 @@ class Loop {
       }
       server_.serve(now_s());
       desk_.serve(now_s());
+      manager_.status(daemon_status(foreman_));
+      manager_.alive(now_s());
       wait(signals);
     } while (!signals.came());
   }
@@ -219,6 +240,7 @@ class Loop {
   Queue<Event>& events_;
   SocketServer& server_;
   FrontDesk& desk_;
+  ServiceManager& manager_;
   const Log& log_;
   std::vector<Watch> watches_;
   std::deque<Event> unhandled_;
@@ -251,13 +273,18 @@ void run_daemon(const DaemonConfig& config, const Log& log) {
     SocketServer server(config.socket, config.socket_mode,
                         [&](std::string_view request) { return answer(foreman, keys, request); });
     FrontDesk desk(config, foreman, keys, log);
-    Loop loop(config, foreman, events, server, desk, log);
+    ServiceManager manager;
+    Loop loop(config, foreman, events, server, desk, manager, log);
     log("listening at " + config.socket.string());
+    if (config.printers.empty())
+      log("no printer is configured: add a table [printer.NAME] to the settings, and reload them");
+    manager.ready();
     loop.run(signals);
     log("ending");
+    manager.stopping();
     signals.let_through();
     foreman.stop();
-    threads.finish();
+    threads.finish([&] { manager.alive(now_s()); });
     loop.take_events();
   }
   log("ended");

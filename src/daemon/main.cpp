@@ -2,12 +2,12 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "base/error.h"
 #include "daemon/config.h"
 #include "daemon/loop.h"
+#include "daemon/options.h"
 
 namespace {
 
@@ -16,12 +16,16 @@ using packmerger::Fault;
 
 void log(const std::string& line) { std::cerr << line + "\n" << std::flush; }
 
-int run(const std::string& file) {
+int run(const std::string& file, bool only_check) {
   const packmerger::DaemonConfig config = packmerger::read_config(file);
   if (::access(config.prepare.program.c_str(), X_OK) != 0)
     throw Error(Fault::kBadProfile,
                 "The program that prepares jobs is not there: " + config.prepare.program.string(),
                 "Install packmerger beside packmergerd, or name it in [prepare] program.");
+  if (only_check) {
+    std::cout << file << " is good: " << config.printers.size() << " printer(s)\n";
+    return 0;
+  }
   if (::geteuid() == 0)
     log("warning: running as root; a user of its own in the group dialout is enough");
   ::signal(SIGPIPE, SIG_IGN);  // whoever read our messages may go away
@@ -32,16 +36,12 @@ int run(const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Watches folders, prepares the models dropped there, and prints them.",
-                   "packmergerd");
-  std::string config;
-  program.set_version_flag("--version", PACKMERGER_VERSION);
-  program.add_option("--config", config, "The settings, a TOML file (docs/DAEMON.md)")
-      ->required()
-      ->type_name("FILE");
+  CLI::App program;
+  packmerger::DaemonOptions options;
+  packmerger::add_options(program, options);
   try {
     program.parse(argc, argv);
-    return run(config);
+    return run(options.config, options.check);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : static_cast<int>(Fault::kUsage);
   } catch (const Error& error) {

@@ -90,7 +90,7 @@ std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress&
   const fs::path to = folder.path() / "tetrahedra";
   write_tetgen_input(from, input);
   ProcessSpec spec;
-  spec.argv = {(program_folder() / "packmerger-tetgen").string(), from.string(), to.string()};
+  spec.argv = {helper_program("packmerger-tetgen").string(), from.string(), to.string()};
   spec.max_memory_bytes = kMaxMemoryBytes;
   const ProcessResult result = run_process(spec, kTimeout_s, progress);
   if (!result.status.ok() || !fs::exists(to)) return std::nullopt;

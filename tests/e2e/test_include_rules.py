@@ -23,7 +23,7 @@ MAY_INCLUDE = {
     "http": {"base"},
     "job": {"tray", "picture", "pack", "printers", "shape", "offscreen", "model", "base"},
 }
-EVERYTHING = {"daemon", "cli"}
+EVERYTHING = {"daemon", "cli", "install"}
 FOLDERS = set(MAY_INCLUDE) | EVERYTHING
 OWNERS = {r"tetgen\.h": "one file", r"GL/osmesa\.h": "offscreen", r"microhttpd\.h": "http"}
 

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "base/error.h"
@@ -91,6 +92,20 @@ TEST(Process, EnvironmentAndMemoryLimit) {
   const ProcessResult result = run_process(spec, 0, Progress());
   EXPECT_EQ(result.out, "hello|");
   EXPECT_EQ(result.err, "1048576\n");
+}
+
+TEST(Process, HelpersLieBesideTheProgramOrInLib) {
+  const std::string helper = "packmerger-helper-of-a-test";
+  const fs::path beside = program_folder() / helper;
+  const fs::path installed = program_folder().parent_path() / "lib/packmerger" / helper;
+  EXPECT_EQ(helper_program(helper), beside);
+  fs::create_directories(installed.parent_path());
+  std::ofstream(installed) << "";
+  EXPECT_EQ(helper_program(helper), installed);
+  std::ofstream(beside) << "";
+  EXPECT_EQ(helper_program(helper), beside) << "a build's own helper goes before an installed one";
+  fs::remove(beside);
+  fs::remove_all(program_folder().parent_path() / "lib");
 }
 
 }  // namespace

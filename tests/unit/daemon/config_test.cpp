@@ -128,12 +128,25 @@ TEST_F(ConfigTest, TellsFileLineAndWhatWasExpected) {
       {"[printer.\"..\"]\n", "expected a name of letters"},
       {printer + "[printer.n]\nprofile = \"marlin\"\nport = \"/dev/ttyUSB0\"\n",
        "d.toml:4: [printer.n] has the port of another printer"},
-      {"", "needs at least one table [printer.NAME]"},
       {"socket = \"/" + std::string(200, 'x') + "\"\n" + printer, "d.toml:1: socket: expected"},
       {"[printer.m\n", "d.toml:1: "},
   };
   for (const auto& [text, expected] : cases)
     EXPECT_THAT(refusal(text), HasSubstr(expected)) << text;
+}
+
+TEST_F(ConfigTest, PrintersMayComeLater) {
+  std::ofstream(folder_.path() / "none-yet.toml") << "state = \"s\"\n";
+  EXPECT_TRUE(read_config(folder_.path() / "none-yet.toml").printers.empty());
+}
+
+TEST_F(ConfigTest, TheSocketLiesInTheServicesRuntimeFolder) {
+  std::ofstream(folder_.path() / "r.toml") << "state = \"s\"\n";
+  setenv("RUNTIME_DIRECTORY", "/run/packmerger", 1);
+  const DaemonConfig config = read_config(folder_.path() / "r.toml");
+  unsetenv("RUNTIME_DIRECTORY");
+  EXPECT_EQ(config.socket, "/run/packmerger/packmergerd.sock");
+  EXPECT_EQ(read_config(folder_.path() / "r.toml").socket, folder_.path() / "s/packmergerd.sock");
 }
 
 TEST_F(ConfigTest, AMissingFileIsNoInput) {
