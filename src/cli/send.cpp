@@ -98,7 +98,8 @@ void add_send(CLI::App& program) {
   verb->add_option("DIR", arguments->folder, "the job folder that prepare made")->required();
   CLI::Option* port = verb->add_option("--port", arguments->port,
                                        "the printer's port: a device, usb:VID:PID:SERIAL or "
-                                       "tcp:HOST:PORT; default: the one its USB id is found at");
+                                       "tcp:HOST:PORT; default: the one its USB id is found at")
+                          ->type_name("PORT");
   CLI::Option* tray = verb->add_option("--tray", arguments->tray, "which tray of several")
                           ->check(CLI::PositiveNumber);
   verb->add_option("--to", arguments->to,
