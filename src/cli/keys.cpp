@@ -51,7 +51,7 @@ void add_keys(CLI::App& program) {
     return one;
   };
   const auto named = [&](CLI::App* one) {
-    one->add_option("NAME", arguments->name, "whose key it is")->required();
+    one->add_option("WHO", arguments->name, "whose key it is")->required();
     return one;
   };
   action("list", "Which keys there are")->callback([arguments] { list(*arguments); });
