@@ -184,7 +184,7 @@ usb::Device device_at(libusb_context* context, const UsbDevice& wanted, const st
 
 std::unique_ptr<UsbPort> open_usb_port(const UsbDevice& device, const std::string& name) {
   usb::Context context = usb::open_context();
-  const usb::Device found = device_at(context.get(), device, name);
+  usb::Device found = device_at(context.get(), device, name);
   const usb::Configuration configuration = usb::configuration_of(found.get());
   const auto interface =
       configuration ? find_interface(*configuration) : std::optional<PrinterInterface>();
@@ -195,6 +195,7 @@ std::unique_ptr<UsbPort> open_usb_port(const UsbDevice& device, const std::strin
   if (const int failed = libusb_open(found.get(), &opened); failed != 0)
     throw_cannot(name, "open", failed);
   usb::Handle handle(opened, libusb_close);
+  found.reset();  // the handle keeps it, and nothing may keep it longer than the context lives
   libusb_set_auto_detach_kernel_driver(opened, 1);
   if (const int failed = libusb_claim_interface(opened, interface->number); failed != 0)
     throw_cannot(name, "claim", failed);

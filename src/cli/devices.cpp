@@ -59,6 +59,7 @@ json devices_json(const Devices& devices, const json& printers) {
   for (const SerialDevice& device : devices.serial) {
     json one = usb_json(device.usb, profiles);
     one["port"] = device.port;
+    one["address"] = stable_address(device);
     one["link"] = device.link.empty() ? json() : json(device.link);
     one["driver"] = device.driver.empty() ? json() : json(device.driver);
     one["may_open"] = device.may_open;
@@ -69,6 +70,7 @@ json devices_json(const Devices& devices, const json& printers) {
   for (const UsbDevice& device : devices.usb) {
     json one = usb_json(device.usb, profiles);
     one["at"] = device.at;
+    one["address"] = stable_address(device);
     one["is_printer"] = device.is_printer;
     one["may_open"] = device.may_open;
     one["printer"] = printer_at(device, printers);
@@ -104,14 +106,17 @@ void print_text(const json& told) {
   }
   print_table(rows);
   for (const json& device : told.at("serial")) {
-    if (!text_of(device, "link").empty())
-      fmt::print("{} stays {}\n", text_of(device, "port"), text_of(device, "link"));
+    if (text_of(device, "address") != text_of(device, "port"))
+      fmt::print("{} stays {}\n", text_of(device, "port"), text_of(device, "address"));
     if (!device.at("may_open").get<bool>())
       fmt::print(stderr,
                  "You may not open {}: add your user to the group that owns it (on Debian: "
                  "dialout).\n",
                  text_of(device, "port"));
   }
+  for (const json& device : told.at("usb"))
+    if (device.at("is_printer").get<bool>())
+      fmt::print("{} stays {}\n", text_of(device, "at"), text_of(device, "address"));
 }
 
 }  // namespace

@@ -36,18 +36,20 @@ std::vector<std::string> row_of(const json& printer) {
   const json print = printer.value("print", json());
   if (print.is_object()) doing += ": " + print_text(print);
   if (printer.value("paused", false)) doing += ", paused";
+  const json connected = printer.value("connected", json());
   const std::string port = text_of(printer, "port");
   return {text_of(printer, "name"),
           text_of(printer, "profile"),
           text_of(printer, "approve"),
           text_of(printer, "bed"),
+          connected.is_boolean() ? (connected.get<bool>() ? "yes" : "no") : "-",
           doing,
           port.empty() ? text_of(printer, "handoff_folder") : port,
           text_of(printer, "folder")};
 }
 
-const std::vector<std::string> kHeading = {"PRINTER", "PROFILE", "APPROVE", "BED",
-                                           "DOES",    "AT",      "FOLDER"};
+const std::vector<std::string> kHeading = {"PRINTER",   "PROFILE", "APPROVE", "BED",
+                                           "CONNECTED", "DOES",    "AT",      "FOLDER"};
 
 void list(const Arguments& arguments) {
   const json printers = ask(arguments.daemon, {{"verb", "printers.list"}});

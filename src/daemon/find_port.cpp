@@ -49,8 +49,13 @@ bool is_one_of(const std::string& id, const std::vector<std::string>& ids) {
 }
 
 std::string usb_address(const UsbIdentity& usb) {
-  return std::string(kUsbPrefix) + usb.id + ":" + usb.serial_number;
+  return std::string(kUsbPrefix) + usb.id + (usb.serial_number.empty() ? "" : ":") +
+         usb.serial_number;
 }
+
+// For people who have to choose.
+std::string name_of(const SerialDevice& device) { return stable_address(device); }
+std::string name_of(const UsbDevice& device) { return stable_address(device) + " at " + device.at; }
 
 bool is_candidate(const SerialDevice&) { return true; }
 bool is_candidate(const UsbDevice& device) { return device.is_printer; }
@@ -68,7 +73,7 @@ Device find_one(const std::vector<Device>& devices, const std::string& address,
         address.empty() ? is_one_of(device.usb.id, usb_ids) : is_at(address, device);
     if (!wanted || !is_candidate(device)) continue;
     found.push_back(device);
-    names.push_back(stable_address(device));
+    names.push_back(name_of(device));
   }
   if (found.empty())
     throw Error(Fault::kUnavailable,
@@ -123,10 +128,7 @@ std::string stable_address(const SerialDevice& device) {
   return device.usb.serial_number.empty() ? device.port : usb_address(device.usb);
 }
 
-std::string stable_address(const UsbDevice& device) {
-  return device.usb.serial_number.empty() ? device.usb.id + " at " + device.at
-                                          : usb_address(device.usb);
-}
+std::string stable_address(const UsbDevice& device) { return usb_address(device.usb); }
 
 std::string find_port(const std::vector<SerialDevice>& devices, const std::string& address,
                       const std::vector<std::string>& usb_ids) {

@@ -24,8 +24,8 @@ void check_address(const std::string& address);
 bool is_at(const std::string& address, const SerialDevice& device);
 bool is_at(const std::string& address, const UsbDevice& device);
 
-// The name of a device that stays the same wherever it is plugged in; its port or place where it
-// has none.
+// The address of a device that stays the same wherever it is plugged in; a serial port's own name
+// where it has none. Without a serial number, usb:VID:PID is every device of the kind.
 std::string stable_address(const SerialDevice& device);
 std::string stable_address(const UsbDevice& device);
 

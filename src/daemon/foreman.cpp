@@ -174,6 +174,7 @@ void Foreman::remove_copied_original(const JobRecord& job) const {
 
 void Foreman::advance(double now_s) {
   now_s_ = now_s;
+  notice_printers();
   std::vector<JobRecord> jobs = store_.open_jobs();
   // a job whose first trays are printed goes before the others
   std::stable_partition(jobs.begin(), jobs.end(),

@@ -93,6 +93,9 @@ class Foreman {
   std::int64_t preparing() const { return preparing_; }  // the job with the worker; 0: none
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
+  // Whether the printer is there, as far as that is told without disturbing it: of one behind a
+  // serial server its last job tells. Nothing: not known, or it is handed its jobs.
+  std::optional<bool> connected(const PrinterConfig& printer) const;
 
  private:
   std::filesystem::path job_path(std::int64_t id) const;
@@ -121,6 +124,9 @@ class Foreman {
   void on(const Filed& event);
   void on(const SendProgress& event);
   void on(const SendEnded& event);
+  void on(const DevicesSeen& event);
+  void note_reached(const JobRecord& job, const SendEnded& event);
+  void notice_printers();
   void sent(JobRecord job, const SendEnded& event);
   void not_started(JobRecord job, const SendEnded& event);
 
@@ -144,6 +150,10 @@ class Foreman {
   std::int64_t preparing_ = 0;                       // the job with the worker
   std::map<std::string, std::int64_t> sending_;      // the job with each printer's sender
   std::map<std::filesystem::path, double> refused_;  // files that could not be copied; until when
+  std::optional<Devices> devices_;                   // as last told
+  std::map<std::string, bool> reached_;              // printers behind serial servers, at last
+  std::map<std::string, bool> there_;                // printers, when they were last looked at
+  bool advised_ = false;                             // on ports whose names do not stay
   double now_s_ = 0;
   bool stopping_ = false;
 };

@@ -101,11 +101,15 @@ void Foreman::on(const SendProgress& event) {
   const auto found = live_.find(event.job);
   if (found == live_.end() || !found->second.control) return;
   found->second.print = event.report;
+  if (event.report.state == PrintState::kConnecting) return;
+  for (const auto& [printer, job] : sending_)
+    if (job == event.job) reached_[printer] = true;
 }
 
 void Foreman::on(const SendEnded& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   if (!job) return;
+  note_reached(*job, event);
   if (job->state == JobState::kSending) sent(*job, event);
   live_[event.job].control.reset();
   live_[event.job].print = {};

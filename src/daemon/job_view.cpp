@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/duration.h"
-#include "daemon/find_port.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
 
@@ -149,9 +148,8 @@ Waits waits_for(const Foreman& foreman, const JobRecord& job) {
   if (record.paused) return Waits::kPaused;
   if (foreman.sending_at(job.printer) != 0) return Waits::kPrinterBusy;
   if (printer->has_bed() && !record.bed_clear) return Waits::kClearBed;
-  std::error_code ignored;
-  if (!printer->hands_over() && !is_tcp(printer->port) && !is_usb(printer->port) &&
-      !std::filesystem::exists(printer->port, ignored))
+  // behind a serial server only another attempt tells
+  if (!is_tcp(printer->port) && !foreman.connected(*printer).value_or(true))
     return Waits::kNotConnected;
   return Waits::kNothing;
 }
@@ -195,6 +193,7 @@ json job_view_with_history(const Foreman& foreman, const JobRecord& job) {
 json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
   const PrinterRecord record = foreman.store().printer(printer.name);
   const std::int64_t sending = foreman.sending_at(printer.name);
+  const std::optional<bool> connected = foreman.connected(printer);
   std::string bed = record.bed_clear ? "clear" : "not clear";
   if (!printer.has_bed()) bed = "none";
   return {{"name", printer.name},
@@ -204,6 +203,7 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"handoff_folder", printer.handoff_folder.string()},
           {"approve", printer.approve == Approve::kAuto ? "auto" : "ask"},
           {"simulated", printer.simulated},
+          {"connected", connected ? json(*connected) : json()},
           {"bed", bed},
           {"paused", record.paused},
           {"job", sending == 0 ? json() : json(sending)},

@@ -23,6 +23,7 @@
 #include "daemon/socket_server.h"
 #include "daemon/watch_folder.h"
 #include "daemon/worker.h"
+#include "firmware_io/hotplug.h"
 
 namespace packmerger {
 namespace {
@@ -83,6 +84,18 @@ class Signals {
   int fd_ = -1;
 };
 
+constexpr double kDevicesRescan_s = 5;
+
+void tell_devices(const std::atomic<bool>& stop, Queue<Event>& events) {
+  watch_devices(stop, kDevicesRescan_s,
+                {[&](const Devices& devices) {
+                   events.push(DevicesSeen{devices, {}});
+                 },
+                 [&](const Error& error) {
+                   events.push(DevicesSeen{{}, Failure{error.fault(), error.what(), error.hint()}});
+                 }});
+}
+
 // Starts the crew's threads; ends their orders and waits for them.
 class Threads {
  public:
@@ -91,6 +104,7 @@ class Threads {
     start([&] { run_clerk(crew.clerk, events); });
     for (const PrinterConfig& printer : config.printers)
       start([&] { run_sender(crew.senders.at(printer.name), events, printer); });
+    start([&] { tell_devices(stop_, events); });
   }
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
@@ -100,6 +114,7 @@ class Threads {
 
   // meanwhile is called again and again until the last has ended.
   void finish(const std::function<void()>& meanwhile) {
+    stop_ = true;
     crew_.worker.close();
     crew_.clerk.close();
     for (auto& [name, orders] : crew_.senders) orders.close();
@@ -123,6 +138,7 @@ class Threads {
 
   Crew& crew_;
   std::atomic<int> running_{0};
+  std::atomic<bool> stop_{false};  // of what has no orders
   std::vector<std::thread> threads_;
 };
 

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/queue.h"
+#include "firmware_io/devices.h"
 #include "firmware_io/print_state.h"
 
 namespace packmerger {
@@ -97,7 +98,11 @@ struct SendEnded {
   Failure failure;   // unless done
   std::string note;  // for the history: where it was handed over to
 };
+struct DevicesSeen {               // whenever something was connected or went
+  std::optional<Devices> devices;  // nothing: the system does not tell, and why
+  std::optional<Failure> failure;
+};
 using Event = std::variant<PrepareProgress, Hashed, Prepared, PrepareFailed, Fetched, Filed,
-                           SendProgress, SendEnded>;
+                           SendProgress, SendEnded, DevicesSeen>;
 
 }  // namespace packmerger

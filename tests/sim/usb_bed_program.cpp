@@ -109,6 +109,7 @@ int main(int argc, char** argv) {
   program.add_option("--unplug-at", arguments.unplug_at);
   program.add_option("--empty-for", arguments.empty_for);
   program.add_flag("--starts-unplugged", arguments.starts_unplugged);
+  program.add_option("--serial", arguments.traits.serial_number);
   program.add_flag("--busy", arguments.traits.busy);
   program.add_option("COMMAND", arguments.command)->required();
   CLI11_PARSE(program, argc, argv);

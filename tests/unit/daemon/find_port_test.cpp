@@ -77,7 +77,7 @@ TEST(FindPort, PrintersOfThePrinterClass) {
   EXPECT_EQ(find_usb_printer(kDevices, "usb:0525:a4a8:A", {}).at, "1-1");
   const Error several = refusal([] { find_usb_printer(kDevices, "usb:0525:a4a8", {}); });
   EXPECT_EQ(several.fault(), Fault::kUnavailable);
-  EXPECT_THAT(several.what(), HasSubstr("usb:0525:a4a8:A, 0525:a4a8 at 1-2"));
+  EXPECT_THAT(several.what(), HasSubstr("usb:0525:a4a8:A at 1-1, usb:0525:a4a8 at 1-2"));
   EXPECT_EQ(refusal([] { find_usb_printer(kDevices, "", {"0525:a4a8"}); }).fault(), Fault::kUsage);
   EXPECT_EQ(refusal([] { find_usb_printer(kDevices, "usb:046d:c077", {}); }).fault(),
             Fault::kUnavailable)

@@ -63,7 +63,8 @@ class Workshop {
     foreman_.reset();
     store_ = std::make_unique<JobStore>(config_.state / "jobs.sqlite");
     crew_ = std::make_unique<Crew>(config_);
-    foreman_ = std::make_unique<Foreman>(config_, *store_, *crew_, [](const std::string&) {});
+    foreman_ = std::make_unique<Foreman>(config_, *store_, *crew_,
+                                         [this](const std::string& line) { log_ += line + "\n"; });
     foreman_->recover();
     foreman_->advance(now_s_);
   }
@@ -114,6 +115,7 @@ class Workshop {
   KeyRing keys_{folder_.path() / "keys.json"};
   double now_s_ = 1000;
   int drops_ = 0;
+  std::string log_;
 };
 
 }  // namespace packmerger

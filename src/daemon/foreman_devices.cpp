@@ -1,0 +1,64 @@
+// Which printers are there.
+#include <algorithm>
+
+#include "daemon/find_port.h"
+#include "daemon/foreman.h"
+#include "firmware_io/port.h"
+
+namespace packmerger {
+
+std::optional<bool> Foreman::connected(const PrinterConfig& printer) const {
+  if (printer.hands_over()) return std::nullopt;
+  if (is_tcp(printer.port)) {
+    const auto found = reached_.find(printer.name);
+    return found == reached_.end() ? std::nullopt : std::optional(found->second);
+  }
+  if (!is_usb(printer.port)) {
+    std::error_code ignored;
+    return std::filesystem::exists(printer.port, ignored);
+  }
+  if (!devices_) return std::nullopt;
+  const auto is_this = [&](const auto& device) { return is_at(printer.port, device); };
+  return printer.abilities.is_sliced()
+             ? std::any_of(devices_->serial.begin(), devices_->serial.end(), is_this)
+             : std::any_of(devices_->usb.begin(), devices_->usb.end(), is_this);
+}
+
+// A job does not wait for the rest of its time when its printer is back.
+void Foreman::notice_printers() {
+  for (const PrinterConfig& printer : config_.printers) {
+    const bool is_there = connected(printer).value_or(true);
+    bool& was_there = there_.emplace(printer.name, true).first->second;
+    if (std::exchange(was_there, is_there) == is_there) continue;
+    log_("printer " + printer.name + (is_there ? ": connected" : ": not connected"));
+    for (const JobRecord& job : is_there ? store_.open_jobs() : std::vector<JobRecord>{})
+      if (job.printer == printer.name && job.state == JobState::kApproved) {
+        live_[job.id].failures = 0;
+        live_[job.id].retry_s = 0;
+      }
+  }
+}
+
+void Foreman::on(const DevicesSeen& event) {
+  devices_ = event.devices;
+  if (event.failure) log_(event.failure->what + ". " + event.failure->hint);
+  const std::vector<SerialDevice> none;
+  if (!std::exchange(advised_, true))
+    for (const PrinterConfig& printer : config_.printers)
+      if (const auto advice = advice_on(printer.port, devices_ ? devices_->serial : none))
+        log_("warning: printer " + printer.name + ": " + *advice);
+  notice_printers();
+}
+
+// Whether a printer behind a serial server is on, its last job told.
+void Foreman::note_reached(const JobRecord& job, const SendEnded& event) {
+  const bool is_busy = event.failure.fault == Fault::kBusy;
+  if (event.outcome == SendOutcome::kDone)
+    reached_[job.printer] = true;
+  else if (event.outcome == SendOutcome::kNotStarted)
+    reached_[job.printer] = is_busy;
+  else
+    reached_.erase(job.printer);
+}
+
+}  // namespace packmerger

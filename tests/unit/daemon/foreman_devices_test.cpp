@@ -1,0 +1,126 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/daemon/workshop.h"
+
+namespace packmerger {
+namespace {
+
+using testing::HasSubstr;
+
+const Failure kAbsent{Fault::kUnavailable, "No printer is there", "Connect it."};
+
+Devices with_serial_port(const std::string& id, const std::string& number = "") {
+  SerialDevice device;
+  device.port = "/dev/ttyACM7";
+  device.usb.id = id;
+  device.usb.serial_number = number;
+  return {{device}, {}};
+}
+
+// One printer, "sim", at the address.
+class DevicesOfThePrinters : public testing::Test {
+ protected:
+  void put_at(const std::string& address, Dialect dialect = Dialect::kGcode) {
+    shop_.config_.printers[2].port = address;
+    shop_.config_.printers[2].abilities.dialect = dialect;
+    shop_.start();
+  }
+
+  // A job that was tried and has to wait.
+  void let_a_job_wait() {
+    shop_.drop("sim", "a.stl");
+    shop_.prepare(*shop_.prepare_order());
+    ASSERT_TRUE(shop_.send_order("sim"));
+    shop_.tell(SendEnded{1, SendOutcome::kNotStarted, kAbsent, ""});
+    ASSERT_FALSE(shop_.send_order("sim")) << "it is tried again later";
+  }
+
+  json connected() {
+    return shop_.ask({{"verb", "printers.list"}}).at("result").at(2).at("connected");
+  }
+
+  Workshop shop_;
+};
+
+TEST_F(DevicesOfThePrinters, AJobStartsAtOnceWhenItsPortIsBack) {
+  const fs::path port = shop_.folder_.path() / "ttyACM0";
+  std::ofstream(port).flush();
+  put_at(port.string());
+  let_a_job_wait();
+  fs::remove(port);
+  shop_.foreman_->advance(shop_.now_s_);
+  EXPECT_EQ(connected(), false);
+  EXPECT_EQ(shop_.view(1).at("waits_for"), "not_connected");
+  std::ofstream(port).flush();
+  shop_.foreman_->advance(shop_.now_s_);
+  EXPECT_EQ(connected(), true);
+  EXPECT_TRUE(shop_.send_order("sim")) << "without the rest of its time";
+}
+
+TEST_F(DevicesOfThePrinters, AUsbAddressIsWhatTheSystemTells) {
+  put_at("usb:23c1:d314:A");
+  EXPECT_EQ(connected(), nullptr) << "nobody has looked";
+  let_a_job_wait();
+  shop_.tell(DevicesSeen{with_serial_port("23c1:d314", "B"), {}});
+  EXPECT_EQ(connected(), false) << "another one of the kind";
+  EXPECT_EQ(shop_.view(1).at("waits_for"), "not_connected");
+  EXPECT_FALSE(shop_.send_order("sim"));
+  shop_.tell(DevicesSeen{with_serial_port("23c1:d314", "A"), {}});
+  EXPECT_EQ(connected(), true);
+  EXPECT_TRUE(shop_.send_order("sim"));
+  EXPECT_THAT(shop_.log_, HasSubstr("printer sim: not connected\n"));
+  EXPECT_THAT(shop_.log_, HasSubstr("printer sim: connected\n"));
+}
+
+TEST_F(DevicesOfThePrinters, APrinterOfDialectUsbIsNoSerialPort) {
+  put_at("usb:0525:a4a8", Dialect::kUsb);
+  shop_.tell(DevicesSeen{with_serial_port("0525:a4a8"), {}});
+  EXPECT_EQ(connected(), false);
+  shop_.tell(DevicesSeen{Devices{{}, {{"1-1", {"0525:a4a8", "", "", ""}, true, true}}}, {}});
+  EXPECT_EQ(connected(), true);
+}
+
+TEST_F(DevicesOfThePrinters, ASystemThatDoesNotTellStopsNothing) {
+  put_at("usb:23c1:d314");
+  shop_.tell(DevicesSeen{{}, Failure{Fault::kIo, "No /sys", "Mount it."}});
+  EXPECT_EQ(connected(), nullptr);
+  EXPECT_THAT(shop_.log_, HasSubstr("No /sys. Mount it.\n"));
+  shop_.drop("sim", "a.stl");
+  shop_.prepare(*shop_.prepare_order());
+  EXPECT_TRUE(shop_.send_order("sim"));
+}
+
+TEST_F(DevicesOfThePrinters, BehindASerialServerTheLastJobTells) {
+  put_at("tcp:127.0.0.1:1");
+  EXPECT_EQ(connected(), nullptr);
+  let_a_job_wait();
+  EXPECT_EQ(connected(), false);
+  EXPECT_NE(shop_.view(1).at("waits_for"), "not_connected") << "only another attempt tells";
+  shop_.now_s_ += shop_.config_.retry_s;
+  shop_.foreman_->advance(shop_.now_s_);
+  ASSERT_TRUE(shop_.send_order("sim"));
+  shop_.tell(SendProgress{1, {PrintState::kConnecting, 0, 10, ""}});
+  EXPECT_EQ(connected(), false);
+  shop_.tell(SendProgress{1, {PrintState::kPrinting, 1, 10, ""}});
+  EXPECT_EQ(connected(), true);
+  shop_.tell(SendEnded{1, SendOutcome::kFailed, {Fault::kIo, "is gone", "Look."}, ""});
+  EXPECT_EQ(connected(), nullptr);
+}
+
+TEST_F(DevicesOfThePrinters, PortsWhoseNamesDoNotStayAreToldOnce) {
+  put_at("/dev/ttyACM7");
+  Devices devices = with_serial_port("23c1:d314", "A");
+  shop_.tell(DevicesSeen{devices, {}});
+  EXPECT_THAT(shop_.log_, HasSubstr("warning: printer sim: /dev/ttyACM7 may be another device"));
+  shop_.log_.clear();
+  shop_.tell(DevicesSeen{Devices{}, {}});
+  EXPECT_EQ(shop_.log_.find("warning"), std::string::npos);
+}
+
+TEST_F(DevicesOfThePrinters, WhatIsHandedOverIsNotConnected) {
+  EXPECT_EQ(shop_.ask({{"verb", "printers.list"}}).at("result").at(0).at("connected"), nullptr);
+}
+
+}  // namespace
+}  // namespace packmerger
