@@ -25,7 +25,7 @@ struct HeaterReport {
   bool operator==(const HeaterReport&) const = default;
 };
 
-// `done` of `total` program lines (G-code) or bytes (x3g) were acknowledged by the printer.
+// `done` of `total` program lines (G-code) or bytes (x3g, USB) were taken by the printer.
 // `text` is for people and may be empty: temperatures, or what the printer waits for.
 struct PrintReport {
   PrintState state = PrintState::kConnecting;

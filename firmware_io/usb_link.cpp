@@ -73,13 +73,7 @@ class UsbPrint {
   void check_name(const std::string& wanted) {
     if (wanted.empty()) return;
     const UsbPrinterId id = read_usb_printer_id(port_.device_id());
-    if (names_printer(id, wanted)) return;
-    const std::string name = id.manufacturer + " " + id.model;
-    throw Error(Fault::kUnavailable,
-                "The printer at " + port_.name() + " is another one (" +
-                    (name == " " ? "it tells no name" : name) + " instead of " + wanted + ")",
-                "Name the printer that the job was prepared for, or correct link.device_id in its "
-                "profile.");
+    check_machine(port_.name(), id.manufacturer + " " + id.model, wanted);
   }
 
   void run() {
@@ -88,6 +82,7 @@ class UsbPrint {
     reporter_.state(PrintState::kPrinting);
     while (sent_ < document_.size()) {
       if (control_.cancelled() || control_.stopped()) cancel();
+      stand_paused();
       const std::string_view block = document_.block(sent_);
       // A transfer that timed out or stalled may have moved some bytes: they are not sent again.
       const std::size_t taken = port_.write(block, kTransfer_s);
@@ -125,6 +120,18 @@ class UsbPrint {
     if (reporter_.current() == PrintState::kWaiting) reporter_.state(PrintState::kPrinting);
   }
 
+  void stand_paused() {
+    paused_ = control_.take_pause_request().value_or(paused_);
+    if (!paused_) return;
+    reporter_.state(PrintState::kPaused, "the rest of the document is held back");
+    while (paused_) {
+      pause();
+      paused_ = control_.take_pause_request().value_or(paused_);
+    }
+    reporter_.state(PrintState::kPrinting);
+    moved_at_s_ = port_.now_s();
+  }
+
   std::string find_trouble() {
     const auto status = port_.port_status();
     return status ? trouble_of(read_usb_printer_status(*status)) : std::string();
@@ -159,17 +166,18 @@ class UsbPrint {
   Reporter& reporter_;
   PrintControl& control_;
   std::size_t sent_ = 0;
+  bool paused_ = false;
   double moved_at_s_ = 0;
 };
 
 }  // namespace
 
-void print_usb(UsbPort& port, const std::filesystem::path& document, const std::string& wanted_id,
-               const StreamOptions& options, const PrintListener& listener, PrintControl& control) {
+void print_usb(UsbPort& port, const std::filesystem::path& document, const StreamOptions& options,
+               const PrintListener& listener, PrintControl& control) {
   Document source(document);
   Reporter reporter(port, listener, options, source.size(), RemainingTime({}));
   UsbPrint print(port, source, options, reporter, control);
-  print.check_name(wanted_id);
+  print.check_name(options.machine);
   try {
     print.run();
   } catch (...) {

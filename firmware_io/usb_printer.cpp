@@ -53,10 +53,6 @@ UsbPrinterId read_usb_printer_id(std::string_view answer) {
   return id;
 }
 
-bool names_printer(const UsbPrinterId& id, std::string_view wanted) {
-  return upper(id.manufacturer + " " + id.model).find(upper(wanted)) != std::string::npos;
-}
-
 UsbPrinterStatus read_usb_printer_status(std::uint8_t answer) {
   constexpr unsigned kPaperEmpty = 1U << 5U;
   constexpr unsigned kSelect = 1U << 4U;

@@ -21,9 +21,6 @@ struct UsbPrinterId {
 // otherwise are sold; all that came is then read. Anything is taken, never an error.
 UsbPrinterId read_usb_printer_id(std::string_view answer);
 
-// Whether `wanted` is part of "MANUFACTURER MODEL", upper and lower case being the same.
-bool names_printer(const UsbPrinterId& id, std::string_view wanted);
-
 // What a printer answers to GET_PORT_STATUS, one byte.
 struct UsbPrinterStatus {
   bool paper_empty = false;  // of a machine that makes solids: the material

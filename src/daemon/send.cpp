@@ -62,8 +62,7 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
     const UsbDevice device = find_usb_printer(connected_devices().usb, port, profile.link.usb_ids);
     const fs::path document =
         tray_path(job_folder, "tray", tray, document_extension(profile.document));
-    return print_usb(*open_usb_port(device, port), document, profile.link.device_id, options,
-                     listener, control);
+    return print_usb(*open_usb_port(device, port), document, options, listener, control);
   }
   const bool is_gcode = profile.dialect == Dialect::kGcode;
   const std::string program = read_file(

@@ -121,7 +121,6 @@ struct LinkSettings {
   double timeout_s = 30;             // silence after which the printer counts as gone
   double boot_wait_s = 2;            // after opening, for boards that reset
   std::vector<std::string> usb_ids;  // "vvvv:pppp", lower-case hex
-  std::string device_id;             // dialect usb: part of the name the printer must tell
   std::string safe_gcode;            // sent after a failure or a cancel: heaters off
   std::string pause_gcode;           // executed once a print stands paused; dialect gcode
   std::string resume_gcode;          // executed before it goes on; dialect gcode

@@ -255,9 +255,6 @@ void add_link(LinkSettings& s, std::vector<Key>& keys) {
         "Wait after opening the port, for boards that reset then."},
        {"link.usb_ids", TextsKey{&s.usb_ids, usb_form()}, "",
         "USB vendor and product numbers the machine shows itself by."},
-       {"link.device_id", TextKey{&s.device_id, one_line()}, "",
-        "Text that must be part of the maker's and model's name that a printer "
-        "of dialect usb tells (IEEE 1284)."},
        {"link.safe_gcode", TextKey{&s.safe_gcode, {}}, "",
         "Sent after a failure or a cancel: heaters off."},
        {"link.pause_gcode", TextKey{&s.pause_gcode, {}}, "",
@@ -267,7 +264,8 @@ void add_link(LinkSettings& s, std::vector<Key>& keys) {
        {"link.window_bytes", IntegerKey{&s.window_bytes, from_to(0, 96)}, "bytes",
         "Dialect gcode: sent and not acknowledged at most; 0: a line at a time."},
        {"link.machine", TextKey{&s.machine, one_line()}, "",
-        "What the machine must say of itself (M115, or its firmware), in part."}});
+        "What the machine must say of itself (M115, its firmware, or its IEEE 1284 id), in "
+        "part."}});
 }
 
 }  // namespace

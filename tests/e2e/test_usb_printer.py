@@ -30,7 +30,7 @@ class UsbPrinter(unittest.TestCase):
         cls.job = cls.folder / "job"
         result = program.run("prepare", model, "--profile", "objet30", "--no-split", "--no-hollow", "--out", cls.job,
                              "--set", "dialect=usb", "--set", "document=tray_3mf", "--set", "link.usb_ids=0525:a4a8",
-                             "--set", "link.device_id=print bridge", "--set", "link.timeout_s=2")
+                             "--set", "link.machine=print bridge", "--set", "link.timeout_s=2")
         assert result.code == 0, result
         cls.document = (cls.job / "tray.3mf").read_bytes()
 
@@ -98,7 +98,7 @@ retry_s = 3600
 still_s = 0.1
 [printer.bridge]
 profile = "objet30"
-set = ["dialect=usb", "link.device_id=Acme"]
+set = ["dialect=usb", "link.machine=Acme"]
 port = "usb:0525:a4a8:B-1"
 simulated = true
 split = false

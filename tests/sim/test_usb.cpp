@@ -50,13 +50,14 @@ class UsbPrinting : public testing::Test {
   std::optional<Error> print(const std::string& wanted = "", double timeout_s = 30) {
     StreamOptions options;
     options.timeout_s = timeout_s;
+    options.machine = wanted;
     const auto listener = [&](const PrintReport& report) {
       reports_.push_back(report);
       if (on_report_) on_report_(report);
     };
     try {
       const auto port = open_usb_port(connected_devices().usb.at(0), "usb:0525:a4a8");
-      print_usb(*port, path(), wanted, options, listener, control_);
+      print_usb(*port, path(), options, listener, control_);
     } catch (const Error& error) {
       return error;
     }
@@ -276,6 +277,40 @@ TEST_F(UsbPrinting, CancelWhileItIsOutOfMaterial) {
   EXPECT_THAT(bed_.events(), Not(Contains("soft reset"))) << "it was given nothing";
 }
 
+TEST_F(UsbPrinting, PausesHoldTheRestBackWithoutATimeOut) {
+  bed_.plug_printer();
+  std::size_t at_the_pause = 0;
+  bed_.on_bulk = [&](std::size_t received, std::size_t offered) -> BulkAnswer {
+    if (received == 5 * kBlock) control_.pause();
+    return {offered, End::kTaken};
+  };
+  std::future<void> resumer;
+  on_report_ = [&](const PrintReport& report) {
+    if (report.state != PrintState::kPaused || resumer.valid()) return;
+    at_the_pause = bed_.received().size();
+    resumer = std::async(std::launch::async, [&] {
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+      EXPECT_EQ(bed_.received().size(), at_the_pause);
+      control_.resume();
+    });
+  };
+  expect_printed(print("", 0.5));
+  EXPECT_EQ(at_the_pause, 6 * kBlock);
+}
+
+TEST_F(UsbPrinting, StoppedAtOnceWhilePaused) {
+  bed_.plug_printer();
+  bed_.on_bulk = [&](std::size_t, std::size_t offered) -> BulkAnswer {
+    control_.pause();
+    return {offered, End::kTaken};
+  };
+  on_report_ = [&](const PrintReport& report) {
+    if (report.state == PrintState::kPaused) control_.stop_at_once();
+  };
+  expect_failed(print(), Fault::kIo, "stopped at once");
+  EXPECT_THAT(bed_.events(), Contains("soft reset"));
+}
+
 TEST_F(UsbPrinting, ABusyPrinterIsNotTouched) {
   UsbPrinterTraits traits;
   traits.busy = true;
@@ -286,7 +321,7 @@ TEST_F(UsbPrinting, ABusyPrinterIsNotTouched) {
 
 TEST_F(UsbPrinting, AnotherPrinterIsRefused) {
   bed_.plug_printer();
-  expect_failed(print("Stratasys"), Fault::kUnavailable, "another one (Acme Print bridge");
+  expect_failed(print("Stratasys"), Fault::kUnavailable, "says that it is \"Acme Print bridge\"");
   EXPECT_THAT(bed_.events(), Contains("attach usblp"));
 }
 

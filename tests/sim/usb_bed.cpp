@@ -121,11 +121,12 @@ void UsbBed::unplug(const std::vector<std::string>& sys_paths) {
 
 void UsbBed::plug_printer(const UsbPrinterTraits& traits) {
   const int number = ++devices_ + 1;
+  if (!node_.empty()) umockdev_testbed_detach_ioctl(bed_.get(), node_.c_str(), nullptr);
   {
     const std::lock_guard lock(mutex_);
     traits_ = traits;
     node_ = "/dev/bus/usb/001/" + numbered("%03d", number);
-    gone_ = halted_ = deaf_ = false;
+    gone_ = unplugs_ = halted_ = deaf_ = false;
     urbs_.clear();
   }
   plug(usb_description(traits, number), {usb_sys_path(traits.place)});
@@ -136,10 +137,9 @@ void UsbBed::plug_printer(const UsbPrinterTraits& traits) {
 void UsbBed::unplug_printer() {
   {
     const std::lock_guard lock(mutex_);
-    gone_ = true;
+    go();
   }
-  umockdev_testbed_detach_ioctl(bed_.get(), node_.c_str(), nullptr);
-  node_.clear();
+  // The handler stays: whoever has the device open goes on asking, and is told that it is gone.
   unplug({usb_sys_path(traits_.place)});
 }
 
@@ -216,6 +216,7 @@ int UsbBed::submit(UMockdevIoctlData* arg) {
   else
     urb->ended = false;  // nothing to tell
   urbs_.push_back(std::move(urb));
+  if (unplugs_) go();
   return 0;
 }
 
@@ -255,10 +256,19 @@ void UsbBed::bulk(Urb& urb, UMockdevIoctlData& buffer) {
   urb.moved = std::min(answer.bytes, offered);
   received_.append(reinterpret_cast<const char*>(buffer.data), urb.moved);
   halted_ = halted_ || answer.end == BulkAnswer::End::kStall;
-  gone_ = answer.end == BulkAnswer::End::kUnplugged;
+  unplugs_ = answer.end == BulkAnswer::End::kUnplugged;
   if (halted_) urb.status = -EPIPE;
-  if (gone_) urb.status = -ESHUTDOWN;
-  urb.ended = answer.end != BulkAnswer::End::kSilence;
+  urb.ended = answer.end != BulkAnswer::End::kSilence && answer.end != BulkAnswer::End::kUnplugged;
+}
+
+// As the kernel does: what is under way ends, and can still be reaped.
+void UsbBed::go() {
+  gone_ = true;
+  for (const std::unique_ptr<Urb>& urb : urbs_) {
+    if (urb->ended) continue;
+    urb->ended = true;
+    urb->status = -ESHUTDOWN;
+  }
 }
 
 int UsbBed::reap(UMockdevIoctlData* arg) {

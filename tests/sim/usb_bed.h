@@ -90,6 +90,7 @@ class UsbBed {
   int discard(UMockdevIoctlData* arg);
   int claim(const std::string& driver);
   void control(Urb& urb, UMockdevIoctlData& buffer);
+  void go();
   void bulk(Urb& urb, UMockdevIoctlData& buffer);
   void note(const std::string& event) { events_.push_back(event); }
 
@@ -105,6 +106,7 @@ class UsbBed {
   std::vector<std::string> events_;
   bool halted_ = false;
   bool deaf_ = false;
+  bool unplugs_ = false;  // with the transfer that is being submitted
   bool gone_ = false;
 };
 

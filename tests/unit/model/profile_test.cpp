@@ -345,10 +345,10 @@ TEST(Profiles, AnyDocumentPrinterCanBeSetToUsb) {
     EXPECT_EQ(profile.dialect, Dialect::kHandoff) << id;
     set_profile_key(profile, "dialect=usb");
     set_profile_key(profile, "document=tray_3mf");
-    set_profile_key(profile, "link.device_id=Print bridge");
+    set_profile_key(profile, "link.machine=Print bridge");
     EXPECT_NO_THROW(check_settings(profile)) << id;
     EXPECT_EQ(profile.dialect, Dialect::kUsb);
-    EXPECT_EQ(profile.link.device_id, "Print bridge");
+    EXPECT_EQ(profile.link.machine, "Print bridge");
     EXPECT_FALSE(profile.is_sliced());
   }
 }
