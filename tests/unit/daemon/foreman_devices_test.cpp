@@ -100,9 +100,11 @@ TEST_F(DevicesOfThePrinters, BehindASerialServerTheLastJobTells) {
   shop_.now_s_ += shop_.config_.retry_s;
   shop_.foreman_->advance(shop_.now_s_);
   ASSERT_TRUE(shop_.send_order("sim"));
-  shop_.tell(SendProgress{1, {PrintState::kConnecting, 0, 10, ""}});
+  PrintReport report;
+  shop_.tell(SendProgress{1, report});
   EXPECT_EQ(connected(), false);
-  shop_.tell(SendProgress{1, {PrintState::kPrinting, 1, 10, ""}});
+  report.state = PrintState::kPrinting;
+  shop_.tell(SendProgress{1, report});
   EXPECT_EQ(connected(), true);
   shop_.tell(SendEnded{1, SendOutcome::kFailed, {Fault::kIo, "is gone", "Look."}, ""});
   EXPECT_EQ(connected(), nullptr);
