@@ -46,12 +46,12 @@ function(packmerger_program name)
   target_link_libraries(${name} PRIVATE packmerger_compile_options ${ARG_LINKS})
 endfunction()
 
-# packmerger_test(NAME SOURCES ... LINKS ... [TIMEOUT s] [LABEL unit|unit-threads|...]): a GoogleTest
-# program, one ctest test a TEST(). tests/ is on the include path. Label unit (the default) runs under
-# the address and undefined sanitizers, unit-threads under the thread sanitizer as well; the target
-# LABEL_tests builds all programs of a label.
+# packmerger_test(NAME SOURCES ... LINKS ... [TIMEOUT s] [LABEL unit|unit-threads|...] [RUNNER program]): a
+# GoogleTest program, started by RUNNER where there is one, one ctest test a TEST(). tests/ is on the include path.
+# Label unit (the default) runs under the address and undefined sanitizers, unit-threads under the thread sanitizer as
+# well; the target LABEL_tests builds all programs of a label.
 function(packmerger_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT;LABEL" "SOURCES;LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "TIMEOUT;LABEL;RUNNER" "SOURCES;LINKS")
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -63,6 +63,10 @@ function(packmerger_test name)
   endif()
   packmerger_program(${name} SOURCES ${ARG_SOURCES} LINKS ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  if(ARG_RUNNER)
+    # CMake's name for it; gtest_discover_tests reads it at once
+    set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR ${ARG_RUNNER})
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABEL})
   # gtest_discover_tests takes no properties that are lists
