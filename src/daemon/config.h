@@ -28,6 +28,8 @@ struct WatchConfig {
   double rescan_s = 5;    // how often a folder is read again although nothing was reported
   double still_s = 1;     // a file must not have changed for so long
   double give_up_s = 60;  // a file that looks cut short is taken after so long, and refused then
+
+  bool operator==(const WatchConfig&) const = default;
 };
 
 // The web server. Off until it has a port.
@@ -37,6 +39,8 @@ struct WebConfig {
   std::vector<std::string> hosts;     // names by which browsers reach it
   std::uint64_t most_upload_bytes = std::uint64_t{1} << 30;
   std::filesystem::path page;  // the built page's folder
+
+  bool operator==(const WebConfig&) const = default;
 };
 
 struct PrinterConfig {

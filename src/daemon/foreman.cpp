@@ -229,7 +229,7 @@ void Foreman::start_preparing(JobRecord job) {
   LiveJob& live = live_[job.id];
   live.cancel_prepare = std::make_shared<std::atomic<bool>>(false);
   crew_.worker.push({job.id, job.input, job.folder, prepare_command(config_, *printer, job),
-                     live.cancel_prepare});
+                     config_.prepare, live.cancel_prepare});
   say(job, "preparing");
 }
 

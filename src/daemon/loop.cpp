@@ -8,22 +8,21 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <deque>
 #include <thread>
 
 #include "base/files.h"
 #include "daemon/api.h"
+#include "daemon/crew_threads.h"
 #include "daemon/foreman.h"
 #include "daemon/front_desk.h"
 #include "daemon/job_view.h"
 #include "daemon/move_file.h"
+#include "daemon/reload.h"
 #include "daemon/service_manager.h"
 #include "daemon/socket_server.h"
 #include "daemon/watch_folder.h"
-#include "daemon/worker.h"
-#include "firmware_io/hotplug.h"
 
 namespace packmerger {
 namespace {
@@ -72,79 +71,26 @@ class Signals {
   ~Signals() { ::close(fd_); }
 
   int fd() const { return fd_; }
-  bool came() {
+  // The one that came; 0: none.
+  int next() {
     signalfd_siginfo signal;
-    return ::read(fd_, &signal, sizeof signal) == sizeof signal;
+    return ::read(fd_, &signal, sizeof signal) == sizeof signal ? static_cast<int>(signal.ssi_signo)
+                                                                : 0;
   }
-  // From now on a signal ends the process.
-  void let_through() { ::pthread_sigmask(SIG_UNBLOCK, &set_, nullptr); }
+  // From now on SIGTERM and SIGINT end the process; there is nothing left to reload.
+  void let_through() {
+    ::sigdelset(&set_, SIGHUP);
+    ::pthread_sigmask(SIG_UNBLOCK, &set_, nullptr);
+  }
 
  private:
   sigset_t set_;
   int fd_ = -1;
 };
 
-constexpr double kDevicesRescan_s = 5;
-
-void tell_devices(const std::atomic<bool>& stop, Queue<Event>& events) {
-  watch_devices(stop, kDevicesRescan_s,
-                {[&](const Devices& devices) {
-                   events.push(DevicesSeen{devices, {}});
-                 },
-                 [&](const Error& error) {
-                   events.push(DevicesSeen{{}, Failure{error.fault(), error.what(), error.hint()}});
-                 }});
-}
-
-// Starts the crew's threads; ends their orders and waits for them.
-class Threads {
- public:
-  Threads(const DaemonConfig& config, Crew& crew, Queue<Event>& events) : crew_(crew) {
-    start([&] { run_worker(crew.worker, events, config.prepare); });
-    start([&] { run_clerk(crew.clerk, events); });
-    for (const PrinterConfig& printer : config.printers)
-      start([&] { run_sender(crew.senders.at(printer.name), events, printer); });
-    start([&] { tell_devices(stop_, events); });
-  }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-  ~Threads() {
-    finish([] {});
-  }
-
-  // meanwhile is called again and again until the last has ended.
-  void finish(const std::function<void()>& meanwhile) {
-    stop_ = true;
-    crew_.worker.close();
-    crew_.clerk.close();
-    for (auto& [name, orders] : crew_.senders) orders.close();
-    while (running_ > 0) {
-      meanwhile();
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    for (std::thread& thread : threads_)
-      if (thread.joinable()) thread.join();
-  }
-
- private:
-  template <typename Work>
-  void start(Work work) {
-    ++running_;
-    threads_.emplace_back([this, work] {
-      work();
-      --running_;
-    });
-  }
-
-  Crew& crew_;
-  std::atomic<int> running_{0};
-  std::atomic<bool> stop_{false};  // of what has no orders
-  std::vector<std::thread> threads_;
-};
-
 // A printer's folder. One that cannot be watched (a share that is not mounted) is tried again.
 struct Watch {
-  const PrinterConfig* printer = nullptr;
+  PrinterConfig printer;
   std::unique_ptr<WatchFolder> folder;
   double retry_s = 0;
   std::string told;  // the last trouble, told once
@@ -153,22 +99,25 @@ struct Watch {
 class Loop {
  public:
   Loop(const DaemonConfig& config, Foreman& foreman, Queue<Event>& events, SocketServer& server,
-       FrontDesk& desk, ServiceManager& manager, const Log& log)
+       FrontDesk& desk, ServiceManager& manager, Reload& reload, const Log& log)
       : config_(config),
         foreman_(foreman),
         events_(events),
         server_(server),
         desk_(desk),
         manager_(manager),
+        reload_(reload),
         log_(log) {
-    for (const PrinterConfig& printer : config.printers) watches_.push_back({&printer, {}, 0, {}});
+    for (const PrinterConfig& printer : config.printers) watches_.push_back({printer, {}, 0, {}});
   }
 
   void run(Signals& signals) {
-    do {
+    for (int signal = 0; signal == 0 || signal == SIGHUP; signal = signals.next()) {
+      if (signal == SIGHUP) reload();
       const double now = now_s();
       try {
         take_events();
+        exchange_printers();
         look_into_folders(now);
         foreman_.advance(now);
         told_.clear();
@@ -180,7 +129,7 @@ class Loop {
       manager_.status(daemon_status(foreman_));
       manager_.alive(now_s());
       wait(signals);
-    } while (!signals.came());
+    }
   }
 
   // An event that could not be recorded stays the first.
@@ -198,13 +147,30 @@ class Loop {
     told = text;
   }
 
+  void reload() {
+    manager_.reloading();
+    const WatchConfig rules = config_.watch;
+    reload_.read();
+    if (rules != config_.watch)
+      for (Watch& watch : watches_) watch.folder.reset();
+    manager_.ready();
+  }
+
+  void exchange_printers() {
+    for (const std::string& name : reload_.exchange_printers()) {
+      std::erase_if(watches_, [&](const Watch& watch) { return watch.printer.name == name; });
+      if (const PrinterConfig* printer = config_.printer(name))
+        watches_.push_back({*printer, {}, 0, {}});
+    }
+  }
+
   void look_into_folders(double now) {
     for (Watch& watch : watches_) {
       if (watch.retry_s > now) continue;
       const WatchFolder::Found found = look(watch, now);
       for (const WatchFolder::Ignored& ignored : found.ignored) tell_ignored(ignored);
       for (const fs::path& file : found.whole)
-        if (!foreman_.arrived(*watch.printer, file))
+        if (!foreman_.arrived(watch.printer, file))
           watch.folder->refuse(file, now + config_.retry_s);
     }
   }
@@ -212,7 +178,7 @@ class Loop {
   WatchFolder::Found look(Watch& watch, double now) {
     try {
       if (!watch.folder)
-        watch.folder = std::make_unique<WatchFolder>(watch.printer->folder, config_.watch);
+        watch.folder = std::make_unique<WatchFolder>(watch.printer.folder, config_.watch);
       WatchFolder::Found found = watch.folder->look(now);
       watch.told.clear();
       return found;
@@ -257,6 +223,7 @@ class Loop {
   SocketServer& server_;
   FrontDesk& desk_;
   ServiceManager& manager_;
+  Reload& reload_;
   const Log& log_;
   std::vector<Watch> watches_;
   std::deque<Event> unhandled_;
@@ -274,7 +241,8 @@ void make_state_folder(const fs::path& state) {
 
 }  // namespace
 
-void run_daemon(const DaemonConfig& config, const Log& log) {
+void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
+  DaemonConfig config = read();
   make_state_folder(config.state);
   const StateLock lock(config.state);
   Signals signals;
@@ -284,13 +252,14 @@ void run_daemon(const DaemonConfig& config, const Log& log) {
   KeyRing keys(config.state / "keys.json");
   Foreman foreman(config, store, crew, log);
   foreman.recover();
-  Threads threads(config, crew, events);
+  CrewThreads threads(config.printers, crew, events);
   {
     SocketServer server(config.socket, config.socket_mode,
                         [&](std::string_view request) { return answer(foreman, keys, request); });
     FrontDesk desk(config, foreman, keys, log);
     ServiceManager manager;
-    Loop loop(config, foreman, events, server, desk, manager, log);
+    Reload reload(config, read, foreman, threads, log);
+    Loop loop(config, foreman, events, server, desk, manager, reload, log);
     log("listening at " + config.socket.string());
     if (config.printers.empty())
       log("no printer is configured: add a table [printer.NAME] to the settings, and reload them");

@@ -8,11 +8,13 @@
 
 namespace packmerger {
 
-// Runs until SIGTERM, SIGINT or SIGHUP. Then nothing new is started, children are ended, a running
+// Runs until SIGTERM or SIGINT. Then nothing new is started, children are ended, a running
 // print is cancelled in the printer's own way (heaters off) and recorded as failed; a second
 // signal ends the process at once. Call it on the main thread, before any other is started.
 // Throws Error{kBusy} when another daemon works in the state folder, and whatever keeps it from
-// starting. log takes one line without its end, from the calling thread only.
-void run_daemon(const DaemonConfig& config, const std::function<void(const std::string&)>& log);
+// starting. SIGHUP calls `read` again and takes over what it returns (reload.h). log takes one line
+// without its end, from the calling thread only.
+void run_daemon(const std::function<DaemonConfig()>& read,
+                const std::function<void(const std::string&)>& log);
 
 }  // namespace packmerger

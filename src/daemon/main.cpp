@@ -16,20 +16,26 @@ using packmerger::Fault;
 
 void log(const std::string& line) { std::cerr << line + "\n" << std::flush; }
 
-int run(const std::string& file, bool only_check) {
-  const packmerger::DaemonConfig config = packmerger::read_config(file);
+packmerger::DaemonConfig settings_in(const std::string& file) {
+  packmerger::DaemonConfig config = packmerger::read_config(file);
   if (::access(config.prepare.program.c_str(), X_OK) != 0)
     throw Error(Fault::kBadProfile,
                 "The program that prepares jobs is not there: " + config.prepare.program.string(),
                 "Install packmerger beside packmergerd, or name it in [prepare] program.");
-  if (only_check) {
-    std::cout << file << " is good: " << config.printers.size() << " printer(s)\n";
+  return config;
+}
+
+int run(const packmerger::DaemonOptions& options) {
+  const auto read = [&] { return settings_in(options.config); };
+  if (options.check) {
+    const std::size_t printers = read().printers.size();
+    std::cout << options.config << " is good: " << printers << " printer(s)\n";
     return 0;
   }
   if (::geteuid() == 0)
     log("warning: running as root; a user of its own in the group dialout is enough");
   ::signal(SIGPIPE, SIG_IGN);  // whoever read our messages may go away
-  packmerger::run_daemon(config, log);
+  packmerger::run_daemon(read, log);
   return 0;
 }
 
@@ -41,7 +47,7 @@ int main(int argc, char** argv) {
   packmerger::add_options(program, options);
   try {
     program.parse(argc, argv);
-    return run(options.config, options.check);
+    return run(options);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : static_cast<int>(Fault::kUsage);
   } catch (const Error& error) {

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/queue.h"
+#include "daemon/config.h"
 #include "firmware_io/devices.h"
 #include "firmware_io/print_state.h"
 
@@ -30,6 +31,7 @@ struct PrepareOrder {
   std::filesystem::path input;
   std::filesystem::path out;      // the job folder to be made
   std::vector<std::string> argv;  // of the child process
+  PrepareConfig limits;
   std::shared_ptr<std::atomic<bool>> cancel;
 };
 

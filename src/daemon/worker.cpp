@@ -29,14 +29,14 @@ void remove_leftovers(const fs::path& out, const fs::path& temporary) {
   for (const fs::path& path : left) fs::remove_all(path, ignored);
 }
 
-ProcessResult run_child(const PrepareOrder& order, const PrepareConfig& config,
-                        const fs::path& temporary, Queue<Event>& events) {
+ProcessResult run_child(const PrepareOrder& order, const fs::path& temporary,
+                        Queue<Event>& events) {
   ProcessSpec spec;
   spec.argv = order.argv;
   spec.set_env = {{"TMPDIR", temporary.string()}};
   spec.folder = temporary;
-  spec.nice = config.nice;
-  spec.max_memory_bytes = config.memory_bytes;
+  spec.nice = order.limits.nice;
+  spec.max_memory_bytes = order.limits.memory_bytes;
   Clock::time_point told = Clock::now() - kReportEvery;
   const auto on_line = [&](std::string_view text) {
     const std::optional<ProgressLine> line = progress_line(text);
@@ -44,26 +44,26 @@ ProcessResult run_child(const PrepareOrder& order, const PrepareConfig& config,
     told = Clock::now();
     events.push(PrepareProgress{order.job, line->stage, line->fraction});
   };
-  return run_process(spec, config.time_s, Progress({}, order.cancel.get()), on_line);
+  return run_process(spec, order.limits.time_s, Progress({}, order.cancel.get()), on_line);
 }
 
-void check_result(const ProcessResult& result, const PrepareConfig& config) {
+void check_result(const ProcessResult& result, double time_s) {
   if (result.timed_out)
     throw Error(Fault::kBadInput,
-                fmt::format("Preparing took longer than {:g} s and was ended", config.time_s),
+                fmt::format("Preparing took longer than {:g} s and was ended", time_s),
                 "Simplify the model, or raise time_s below [prepare] in the daemon's settings.");
   if (result.status.ok()) return;
   const Failure failure = child_failure(result.status.code, result.status.signal, result.err);
   throw Error(failure.fault, failure.what, failure.hint);
 }
 
-Prepared prepare(const PrepareOrder& order, Queue<Event>& events, const PrepareConfig& config) {
+Prepared prepare(const PrepareOrder& order, Queue<Event>& events) {
   const std::string sha256 = sha256_hex_of_file(order.input);
   events.push(Hashed{order.job, sha256});
   const fs::path temporary = order.out.parent_path() / "tmp";
   remove_leftovers(order.out, temporary);
   fs::create_directories(temporary);
-  check_result(run_child(order, config, temporary, events), config);
+  check_result(run_child(order, temporary, events), order.limits.time_s);
   const PreparedJob job = read_prepared(order.out);
   if (job.input_sha256 != sha256)
     throw Error(Fault::kBusy, "The model was changed while it was being read",
@@ -71,10 +71,9 @@ Prepared prepare(const PrepareOrder& order, Queue<Event>& events, const PrepareC
   return {order.job, job.trays, job.estimates, packing_pays(job)};
 }
 
-Event prepare_or_fail(const PrepareOrder& order, Queue<Event>& events,
-                      const PrepareConfig& config) {
+Event prepare_or_fail(const PrepareOrder& order, Queue<Event>& events) {
   try {
-    return prepare(order, events, config);
+    return prepare(order, events);
   } catch (const Error& error) {
     return PrepareFailed{order.job, {error.fault(), error.what(), error.hint()}};
   } catch (const std::exception& error) {
@@ -122,9 +121,9 @@ Failure child_failure(int exit_code, int signal, std::string_view standard_error
   return failure;
 }
 
-void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events, const PrepareConfig& config) {
+void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events) {
   while (const std::optional<PrepareOrder> order = orders.pop()) {
-    Event end = prepare_or_fail(*order, events, config);
+    Event end = prepare_or_fail(*order, events);
     remove_leftovers(order->out, order->out.parent_path() / "tmp");
     events.push(std::move(end));  // last: whoever hears of it may use the folder
   }

@@ -13,7 +13,7 @@
 namespace packmerger {
 
 // Each runs on the calling thread until its orders are closed and done.
-void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events, const PrepareConfig& config);
+void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events);
 void run_clerk(Queue<ClerkOrder>& orders, Queue<Event>& events);
 void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer);
 

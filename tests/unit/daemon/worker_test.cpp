@@ -44,8 +44,7 @@ class WorkerTest : public testing::Test {
     const char* source = std::getenv("PACKMERGER_SOURCE");
     if (source == nullptr) GTEST_SKIP() << "PACKMERGER_SOURCE is not set; run it with ctest";
     program_ = fs::path(source) / "tests/unit/daemon/fake_prepare.py";
-    config_.memory_bytes = std::uint64_t{1} << 30;
-    thread_ = std::thread([this] { run_worker(orders_, events_, config_); });
+    thread_ = std::thread([this] { run_worker(orders_, events_); });
   }
   void TearDown() override {
     orders_.close();
@@ -60,6 +59,7 @@ class WorkerTest : public testing::Test {
     order.out = folder_.path() / "job";
     order.argv = {program_.string(), "prepare", order.input.string(), "--profile",
                   "marlin",          "--out",   order.out.string()};
+    order.limits.memory_bytes = std::uint64_t{1} << 30;
     order.cancel = std::make_shared<std::atomic<bool>>(false);
     return order;
   }
@@ -77,7 +77,6 @@ class WorkerTest : public testing::Test {
 
   TemporaryFolder folder_;
   fs::path program_;
-  PrepareConfig config_;
   Queue<PrepareOrder> orders_;
   Queue<Event> events_;
   std::thread thread_;
@@ -143,10 +142,11 @@ TEST_F(WorkerTest, CancellingEndsGrandchildrenToo) {
 TEST_F(WorkerTest, AHangingChildIsEndedByItsLimit) {
   TearDown();
   Queue<PrepareOrder> orders;
-  config_.time_s = 1;
-  orders.push(order("hang.stl"));
+  PrepareOrder hanging = order("hang.stl");
+  hanging.limits.time_s = 1;
+  orders.push(hanging);
   orders.close();
-  run_worker(orders, events_, config_);
+  run_worker(orders, events_);
   std::optional<Event> last;
   while (auto event = events_.try_pop()) last = std::move(event);
   EXPECT_THAT(std::get<PrepareFailed>(*last).failure.what, HasSubstr("longer than 1 s"));
