@@ -1,9 +1,9 @@
 #include "printers/estimate.h"
 
-#include <algorithm>
 #include <string>
 
 #include "printers/fdm_toolpath.h"
+#include "printers/layers.h"
 #include "printers/tray_estimate.h"
 
 namespace packmerger {
@@ -78,12 +78,7 @@ double matter_mm3(const Tray& tray) {
   return sum;
 }
 
-double height_mm(const Tray& tray) {
-  double top = 0;
-  for (const Mesh& part : tray.parts)
-    if (part.n_vertices() > 0) top = std::max(top, bounding_box(part).max().z());
-  return top;
-}
+double height_mm(const Tray& tray) { return top_of(pointers(tray)); }
 
 void require_positive(const Profile& profile, double value, const char* key) {
   if (value > 0) return;

@@ -27,6 +27,13 @@ void add_daemon_options(CLI::App& verb, DaemonArguments& arguments) {
   verb.add_flag("--json", arguments.json, "prints JSON");
 }
 
+CLI::App* add_daemon_verb(CLI::App& verb, const std::string& name, const std::string& help,
+                          DaemonArguments& arguments) {
+  CLI::App* one = verb.add_subcommand(name, help);
+  add_daemon_options(*one, arguments);
+  return one;
+}
+
 nlohmann::json ask(const DaemonArguments& arguments, const nlohmann::json& request) {
   return ask_daemon(
       arguments.socket.empty() ? default_socket() : std::filesystem::path(arguments.socket),

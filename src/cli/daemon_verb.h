@@ -17,6 +17,10 @@ struct DaemonArguments {
 // --socket and --json.
 void add_daemon_options(CLI::App& verb, DaemonArguments& arguments);
 
+// A verb below `verb` that speaks to the daemon.
+CLI::App* add_daemon_verb(CLI::App& verb, const std::string& name, const std::string& help,
+                          DaemonArguments& arguments);
+
 nlohmann::json ask(const DaemonArguments& arguments, const nlohmann::json& request);
 
 // JSON for programs, indented, on standard output.

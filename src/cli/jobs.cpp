@@ -72,9 +72,7 @@ void add_jobs(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("jobs", "The daemon's jobs");
   verb->require_subcommand(1);
   const auto action = [&](const std::string& name, const std::string& help) {
-    CLI::App* one = verb->add_subcommand(name, help);
-    add_daemon_options(*one, arguments->daemon);
-    return one;
+    return add_daemon_verb(*verb, name, help, arguments->daemon);
   };
   CLI::App* list_all = action("list", "The newest jobs, what they do and what they wait for");
   list_all->add_option("--limit", arguments->limit, "how many")

@@ -46,9 +46,7 @@ void add_keys(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("keys", "Keys for the daemon's web server");
   verb->require_subcommand(1);
   const auto action = [&](const std::string& name, const std::string& help) {
-    CLI::App* one = verb->add_subcommand(name, help);
-    add_daemon_options(*one, arguments->daemon);
-    return one;
+    return add_daemon_verb(*verb, name, help, arguments->daemon);
   };
   const auto named = [&](CLI::App* one) {
     one->add_option("WHO", arguments->name, "whose key it is")->required();

@@ -78,9 +78,7 @@ void add_printers(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("printers", "The daemon's printers");
   verb->require_subcommand(1);
   const auto action = [&](const std::string& name, const std::string& help) {
-    CLI::App* one = verb->add_subcommand(name, help);
-    add_daemon_options(*one, arguments->daemon);
-    return one;
+    return add_daemon_verb(*verb, name, help, arguments->daemon);
   };
   action("list", "Every printer, its bed and what it does")->callback([arguments] {
     list(*arguments);

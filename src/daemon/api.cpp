@@ -33,10 +33,9 @@ std::int64_t id_of(const json& request) {
   return id;
 }
 
-std::string name_of(const json& request) {
+std::string name_of(const json& request, const std::string& what = "the printer's name") {
   const auto found = request.find("name");
-  if (found == request.end() || !found->is_string())
-    not_understood("The request needs the printer's name");
+  if (found == request.end() || !found->is_string()) not_understood("The request needs " + what);
   return found->get<std::string>();
 }
 
@@ -116,12 +115,6 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
   return kVerbs;
 }
 
-std::string key_name_of(const json& request) {
-  const auto found = request.find("name");
-  if (found == request.end() || !found->is_string()) not_understood("The request needs a name");
-  return found->get<std::string>();
-}
-
 json list_keys(KeyRing& keys, const json&) {
   json list = json::array();
   for (const WebKey& key : keys.list())
@@ -130,12 +123,12 @@ json list_keys(KeyRing& keys, const json&) {
 }
 
 json add_key(KeyRing& keys, const json& request) {
-  const std::string name = key_name_of(request);
+  const std::string name = name_of(request, "a name");
   return {{"name", name}, {"key", keys.add(name)}};
 }
 
 json revoke_key(KeyRing& keys, const json& request) {
-  keys.revoke(key_name_of(request));
+  keys.revoke(name_of(request, "a name"));
   return list_keys(keys, request);
 }
 
