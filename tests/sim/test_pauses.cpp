@@ -76,24 +76,52 @@ std::vector<std::string> from(const std::vector<std::string>& lines, const std::
   return {begin, begin + static_cast<std::ptrdiff_t>(std::min(length, left))};
 }
 
-void expect_marlin_pauses(MarlinTraits traits, std::size_t window_bytes) {
-  Marlin firmware(Pace{1, false}, traits);
-  FaultyPort port(firmware);
+// A print on a simulated Marlin, and the day it has.
+struct MarlinDay {
+  explicit MarlinDay(MarlinTraits traits = {}) : firmware(Pace{1, false}, traits) {}
+  std::optional<Error> print(const StreamOptions& options) {
+    return play(port, true, program, joined(program), control, day, options);
+  }
+
+  Marlin firmware;
+  FaultyPort port{firmware};
   PrintControl control;
   std::vector<std::string> program = gcode_program(kMoves);
-  program.insert(program.begin(), {"G90", "M83"});
   Play day;
-  day.act = [&] { control.pause(); };
-  day.go_on = [&] { control.resume(); };
+};
+
+class MarlinPause : public ::testing::Test, protected MarlinDay {};
+
+struct ReplicatorDay {
+  explicit ReplicatorDay(std::size_t moves = kMoves) : program(x3g_program(moves)) {}
+  std::optional<Error> print() {
+    return play(port, false, program.actions, program.bytes, control, day);
+  }
+
+  Replicator firmware{Pace{1, false}};
+  FaultyPort port{firmware};
+  PrintControl control;
+  X3gProgram program;
+  Play day;
+};
+
+class ReplicatorPause : public ::testing::Test, protected ReplicatorDay {};
+
+void expect_marlin_pauses(MarlinTraits traits, std::size_t window_bytes) {
+  MarlinDay scene(traits);
+  auto& program = scene.program;
+  program.insert(program.begin(), {"G90", "M83"});
+  scene.day.act = [&] { scene.control.pause(); };
+  scene.day.go_on = [&] { scene.control.resume(); };
   StreamOptions options = parking();
   options.window_bytes = window_bytes;
-  const auto failure = play(port, true, program, joined(program), control, day, options);
+  const auto failure = scene.print(options);
   ASSERT_FALSE(failure) << failure->what();
-  EXPECT_EQ(day.states, kPausedOnce);
-  EXPECT_EQ(day.executed_in_the_pause, 0u);
-  EXPECT_GT(day.ended_s, kPrinting_s + kLong_s);
+  EXPECT_EQ(scene.day.states, kPausedOnce);
+  EXPECT_EQ(scene.day.executed_in_the_pause, 0u);
+  EXPECT_GT(scene.day.ended_s, kPrinting_s + kLong_s);
   // "G90" stands in program and texts alike, so both are looked at without it.
-  std::vector<std::string> executed = port.executed();
+  std::vector<std::string> executed = scene.port.executed();
   for (auto* lines : {&executed, &program}) std::erase(*lines, "G90");
   std::erase(executed, "M105");
   EXPECT_EQ(from(executed, "M400", 3), (std::vector<std::string>{"M400", "G91", "G1 Z7 F600"}));
@@ -104,25 +132,20 @@ void expect_marlin_pauses(MarlinTraits traits, std::size_t window_bytes) {
   EXPECT_EQ(only(executed, program), program);
 }
 
-TEST(MarlinPause, StandsStillForHoursAndGoesOn) { expect_marlin_pauses({}, 0); }
+TEST_F(MarlinPause, StandsStillForHoursAndGoesOn) { expect_marlin_pauses({}, 0); }
 
-TEST(MarlinPause, WithoutReportsOfItsOwn) {
+TEST_F(MarlinPause, WithoutReportsOfItsOwn) {
   MarlinTraits traits;
   traits.autoreport = false;
   expect_marlin_pauses(traits, 0);
 }
 
-TEST(MarlinPause, WithAWindow) { expect_marlin_pauses({}, 96); }
+TEST_F(MarlinPause, WithAWindow) { expect_marlin_pauses({}, 96); }
 
-TEST(MarlinPause, CancelWhilePausedActsWithinASecond) {
-  Marlin firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  Play day;
+TEST_F(MarlinPause, CancelWhilePausedActsWithinASecond) {
   day.act = [&] { control.pause(); };
   day.go_on = [&] { control.cancel(); };
-  const auto program = gcode_program(kMoves);
-  const auto failure = play(port, true, program, joined(program), control, day, parking());
+  const auto failure = print(parking());
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->fault(), Fault::kInterrupted);
   EXPECT_LT(day.ended_s, kPrinting_s + kLong_s + 1);
@@ -130,15 +153,10 @@ TEST(MarlinPause, CancelWhilePausedActsWithinASecond) {
   EXPECT_EQ(count(port.executed(), "G1 Z-7 F600"), 0u) << "it does not go on";
 }
 
-TEST(MarlinPause, TheMachineAsksForIt) {
-  Marlin firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  Play day;
+TEST_F(MarlinPause, TheMachineAsksForIt) {
   day.act = [&] { firmware.tell_host("pause"); };
   day.go_on = [&] { firmware.tell_host("resume"); };
-  const auto program = gcode_program(kMoves);
-  const auto failure = play(port, true, program, joined(program), control, day, parking());
+  const auto failure = print(parking());
   ASSERT_FALSE(failure) << failure->what();
   EXPECT_EQ(day.states, kPausedOnce);
   EXPECT_EQ(day.executed_in_the_pause, 0u);
@@ -147,15 +165,10 @@ TEST(MarlinPause, TheMachineAsksForIt) {
 }
 
 // It has parked by itself, so nothing of ours is executed; people may let it go on too.
-TEST(MarlinPause, TheMachineStandsStillAlready) {
-  Marlin firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  Play day;
+TEST_F(MarlinPause, TheMachineStandsStillAlready) {
   day.act = [&] { firmware.tell_host("paused"); };
   day.go_on = [&] { control.resume(); };
-  const auto program = gcode_program(kMoves);
-  const auto failure = play(port, true, program, joined(program), control, day, parking());
+  const auto failure = print(parking());
   ASSERT_FALSE(failure) << failure->what();
   EXPECT_EQ(day.states, kPausedOnce);
   EXPECT_EQ(day.executed_in_the_pause, 0u);
@@ -163,14 +176,9 @@ TEST(MarlinPause, TheMachineStandsStillAlready) {
   EXPECT_EQ(count(port.executed(), "G1 Z7 F600"), 0u);
 }
 
-TEST(MarlinPause, CancelledAtItsPanel) {
-  Marlin firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  Play day;
+TEST_F(MarlinPause, CancelledAtItsPanel) {
   day.act = [&] { firmware.tell_host("cancel"); };
-  const auto program = gcode_program(kMoves);
-  const auto failure = play(port, true, program, joined(program), control, day);
+  const auto failure = print(scenario_options());
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->fault(), Fault::kIo);
   EXPECT_THAT(failure->what(), HasSubstr("cancelled at the printer"));
@@ -179,40 +187,31 @@ TEST(MarlinPause, CancelledAtItsPanel) {
 }
 
 // While it heats, and while it stands paused.
-TEST(MarlinPause, StopAtOnceHaltsAndNothingFollows) {
+TEST_F(MarlinPause, StopAtOnceHaltsAndNothingFollows) {
   for (const double act_s : {5.0, kPrinting_s}) {
-    Marlin firmware(Pace{1, false});
-    FaultyPort port(firmware);
-    PrintControl control;
-    Play day;
-    day.act_s = act_s;
+    MarlinDay scene;
+    scene.day.act_s = act_s;
     if (act_s > 5) {
-      day.act = [&] { control.pause(); };
-      day.go_on = [&] { control.stop_at_once(); };
+      scene.day.act = [&] { scene.control.pause(); };
+      scene.day.go_on = [&] { scene.control.stop_at_once(); };
     } else {
-      day.act = [&] { control.stop_at_once(); };
+      scene.day.act = [&] { scene.control.stop_at_once(); };
     }
-    const auto program = gcode_program(kMoves);
-    const auto failure = play(port, true, program, joined(program), control, day);
+    const auto failure = scene.print(scenario_options());
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->fault(), Fault::kIo);
     EXPECT_THAT(failure->what(), HasSubstr("stopped at once"));
-    EXPECT_LT(day.ended_s, act_s + (day.go_on ? kLong_s : 0) + 1);
-    EXPECT_THAT(port.sent, ::testing::EndsWith("M112\n"));
-    firmware.advance(day.ended_s);
-    EXPECT_EQ(port.executed().back(), "halt");
+    EXPECT_LT(scene.day.ended_s, act_s + (scene.day.go_on ? kLong_s : 0) + 1);
+    EXPECT_THAT(scene.port.sent, ::testing::EndsWith("M112\n"));
+    scene.firmware.advance(scene.day.ended_s);
+    EXPECT_EQ(scene.port.executed().back(), "halt");
   }
 }
 
-TEST(ReplicatorPause, StandsStillForHoursAndGoesOn) {
-  Replicator firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  const X3gProgram program = x3g_program(kMoves);
-  Play day;
+TEST_F(ReplicatorPause, StandsStillForHoursAndGoesOn) {
   day.act = [&] { control.pause(); };
   day.go_on = [&] { control.resume(); };
-  const auto failure = play(port, false, program.actions, program.bytes, control, day);
+  const auto failure = print();
   ASSERT_FALSE(failure) << failure->what();
   EXPECT_EQ(day.states, kPausedOnce);
   EXPECT_EQ(day.executed_in_the_pause, 0u);
@@ -220,65 +219,46 @@ TEST(ReplicatorPause, StandsStillForHoursAndGoesOn) {
 }
 
 // We neither undo it nor lose patience, though the whole program may be in the printer already.
-TEST(ReplicatorPause, AtItsPanel) {
+TEST_F(ReplicatorPause, AtItsPanel) {
   for (const std::size_t moves : {kMoves, std::size_t{5}}) {
-    Replicator firmware(Pace{1, false});
-    FaultyPort port(firmware);
-    PrintControl control;
-    const X3gProgram program = x3g_program(moves);
-    Play day;
-    if (moves < kMoves) day.act_s = 20;
-    day.act = [&] { firmware.press_pause(); };
-    day.go_on = [&] { firmware.press_pause(); };
-    const auto failure = play(port, false, program.actions, program.bytes, control, day);
+    ReplicatorDay scene(moves);
+    if (moves < kMoves) scene.day.act_s = 20;
+    scene.day.act = [&] { scene.firmware.press_pause(); };
+    scene.day.go_on = [&] { scene.firmware.press_pause(); };
+    const auto failure = scene.print();
     ASSERT_FALSE(failure) << failure->what();
-    EXPECT_EQ(std::count(day.states.begin(), day.states.end(), PrintState::kPaused), 1);
-    EXPECT_EQ(day.executed_in_the_pause, 0u);
-    EXPECT_EQ(port.executed(), program.actions);
+    EXPECT_EQ(std::count(scene.day.states.begin(), scene.day.states.end(), PrintState::kPaused), 1);
+    EXPECT_EQ(scene.day.executed_in_the_pause, 0u);
+    EXPECT_EQ(scene.port.executed(), scene.program.actions);
   }
 }
 
 // Asking for what is so already must not toggle it.
-TEST(ReplicatorPause, PausedTwiceIsPaused) {
-  Replicator firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  const X3gProgram program = x3g_program(kMoves);
-  Play day;
+TEST_F(ReplicatorPause, PausedTwiceIsPaused) {
   day.act = [&] {
     firmware.press_pause();
     control.pause();
   };
   day.go_on = [&] { control.resume(); };
-  const auto failure = play(port, false, program.actions, program.bytes, control, day);
+  const auto failure = print();
   ASSERT_FALSE(failure) << failure->what();
   EXPECT_EQ(day.executed_in_the_pause, 0u);
   EXPECT_EQ(port.executed(), program.actions);
 }
 
-TEST(ReplicatorPause, CancelWhilePausedActsWithinASecond) {
-  Replicator firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  const X3gProgram program = x3g_program(kMoves);
-  Play day;
+TEST_F(ReplicatorPause, CancelWhilePausedActsWithinASecond) {
   day.act = [&] { control.pause(); };
   day.go_on = [&] { control.cancel(); };
-  const auto failure = play(port, false, program.actions, program.bytes, control, day);
+  const auto failure = print();
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->fault(), Fault::kInterrupted);
   EXPECT_LT(day.ended_s, kPrinting_s + kLong_s + 1);
   EXPECT_EQ(port.executed().back(), "abort");
 }
 
-TEST(ReplicatorPause, StopAtOnceAborts) {
-  Replicator firmware(Pace{1, false});
-  FaultyPort port(firmware);
-  PrintControl control;
-  const X3gProgram program = x3g_program(kMoves);
-  Play day;
+TEST_F(ReplicatorPause, StopAtOnceAborts) {
   day.act = [&] { control.stop_at_once(); };
-  const auto failure = play(port, false, program.actions, program.bytes, control, day);
+  const auto failure = print();
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->fault(), Fault::kIo);
   EXPECT_THAT(failure->what(), HasSubstr("stopped at once"));
