@@ -38,8 +38,10 @@ std::string line_of(const PrintReport& report) {
   return text;
 }
 
+// Without choices there is nothing to answer here: it waits for paper, say, or for its own button.
 std::string question_of(const PrintReport& report) {
-  std::string text = "The printer asks: " + (report.text.empty() ? "go on?" : report.text);
+  std::string text =
+      (report.choices.empty() ? "The printer waits: " : "The printer asks: ") + report.text;
   for (std::size_t i = 0; i < report.choices.size(); ++i)
     text += fmt::format("\n  {}: {}", i, report.choices[i]);
   return text;
@@ -62,7 +64,7 @@ void PrintDialogue::tell(const PrintReport& report) {
   show(report);
   if (!changed) return;
   if (report.state == PrintState::kWaiting && !report.text.empty()) {
-    if (asks_ && question_ != Question::kHowToGoOn)
+    if (asks_ && question_ != Question::kHowToGoOn && !report.choices.empty())
       ask(Question::kOfPrinter, question_of(report) + "\nYour answer (Enter: the first): ");
     else
       say(question_of(report));
