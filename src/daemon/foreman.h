@@ -126,6 +126,7 @@ class Foreman {
   void on(const SendEnded& event);
   void on(const DevicesSeen& event);
   void note_reached(const JobRecord& job, const SendEnded& event);
+  void advise(const PrinterConfig& printer);
   void notice_printers();
   void sent(JobRecord job, const SendEnded& event);
   void not_started(JobRecord job, const SendEnded& event);
@@ -153,7 +154,8 @@ class Foreman {
   std::optional<Devices> devices_;                   // as last told
   std::map<std::string, bool> reached_;              // printers behind serial servers, at last
   std::map<std::string, bool> there_;                // printers, when they were last looked at
-  bool advised_ = false;                             // on ports whose names do not stay
+  bool looked_ = false;                              // what is connected was told once
+  std::map<std::string, std::string> advised_;       // printers, the port each was advised on
   double now_s_ = 0;
   bool stopping_ = false;
 };

@@ -24,9 +24,18 @@ std::optional<bool> Foreman::connected(const PrinterConfig& printer) const {
              : std::any_of(devices_->usb.begin(), devices_->usb.end(), is_this);
 }
 
+// On a port whose name does not stay, once for each that is set: at the start, or by a reload.
+void Foreman::advise(const PrinterConfig& printer) {
+  if (!looked_ || std::exchange(advised_[printer.name], printer.port) == printer.port) return;
+  const std::vector<SerialDevice> none;
+  if (const auto advice = advice_on(printer.port, devices_ ? devices_->serial : none))
+    log_("warning: printer " + printer.name + ": " + *advice);
+}
+
 // A job does not wait for the rest of its time when its printer is back.
 void Foreman::notice_printers() {
   for (const PrinterConfig& printer : config_.printers) {
+    advise(printer);
     const bool is_there = connected(printer).value_or(true);
     bool& was_there = there_.emplace(printer.name, true).first->second;
     if (std::exchange(was_there, is_there) == is_there) continue;
@@ -42,11 +51,7 @@ void Foreman::notice_printers() {
 void Foreman::on(const DevicesSeen& event) {
   devices_ = event.devices;
   if (event.failure) log_(event.failure->what + ". " + event.failure->hint);
-  const std::vector<SerialDevice> none;
-  if (!std::exchange(advised_, true))
-    for (const PrinterConfig& printer : config_.printers)
-      if (const auto advice = advice_on(printer.port, devices_ ? devices_->serial : none))
-        log_("warning: printer " + printer.name + ": " + *advice);
+  looked_ = true;
   notice_printers();
 }
 

@@ -120,6 +120,15 @@ TEST_F(DevicesOfThePrinters, PortsWhoseNamesDoNotStayAreToldOnce) {
   EXPECT_EQ(shop_.log_.find("warning"), std::string::npos);
 }
 
+TEST_F(DevicesOfThePrinters, PortsSetByAReloadAreAdvisedOnToo) {
+  put_at("/dev/serial/by-id/usb-B");
+  shop_.tell(DevicesSeen{Devices{}, {}});
+  EXPECT_EQ(shop_.log_.find("warning"), std::string::npos);
+  shop_.config_.printers[2].port = "/dev/ttyACM7";
+  shop_.foreman_->advance(shop_.now_s_);
+  EXPECT_THAT(shop_.log_, HasSubstr("warning: printer sim: /dev/ttyACM7 may be another device"));
+}
+
 TEST_F(DevicesOfThePrinters, WhatIsHandedOverIsNotConnected) {
   EXPECT_EQ(shop_.ask({{"verb", "printers.list"}}).at("result").at(0).at("connected"), nullptr);
 }
