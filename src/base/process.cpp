@@ -14,6 +14,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/confinement.h"
 #include "base/error.h"
 
 namespace packmerger {
@@ -63,8 +64,9 @@ struct Pipe {
 };
 
 // Runs in the child between fork and exec: only async-signal-safe calls.
-[[noreturn]] void become(const ProcessSpec& spec, char* const* argv, char* const* envp,
-                         const Pipe& out, const Pipe& err, const Pipe& failure, pid_t parent) {
+[[noreturn]] void become(const ProcessSpec& spec, const Confinement* confinement, char* const* argv,
+                         char* const* envp, const Pipe& out, const Pipe& err, const Pipe& failure,
+                         pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(127);
@@ -84,7 +86,9 @@ struct Pipe {
     limit.rlim_cur = limit.rlim_max;
     if (::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(127);
   }
-  if (spec.folder.empty() || ::chdir(spec.folder.c_str()) == 0) ::execvpe(argv[0], argv, envp);
+  if ((spec.folder.empty() || ::chdir(spec.folder.c_str()) == 0) &&
+      (confinement == nullptr || confinement->apply()))
+    ::execvpe(argv[0], argv, envp);
   const int reason = errno;
   [[maybe_unused]] const ssize_t told = ::write(failure.write, &reason, sizeof reason);
   ::_exit(127);
@@ -109,6 +113,8 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   std::vector<std::string> environment = environment_of(spec);
   const std::vector<char*> argv = pointers(arguments);
   const std::vector<char*> envp = pointers(environment);
+  std::optional<Confinement> confinement;
+  if (!spec.only_writable.empty()) confinement.emplace(spec.only_writable);
   Pipe out;
   Pipe err;
   Pipe failure;
@@ -117,7 +123,9 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   if (pid_ < 0)
     throw Error(Fault::kInternal, std::string("Cannot start a process: ") + std::strerror(errno),
                 "Close other programs and try again.");
-  if (pid_ == 0) become(spec, argv.data(), envp.data(), out, err, failure, parent);
+  if (pid_ == 0)
+    become(spec, confinement ? &*confinement : nullptr, argv.data(), envp.data(), out, err, failure,
+           parent);
   ::setpgid(pid_, pid_);  // both sides do it, so that it holds whoever runs first
   ::close(std::exchange(failure.write, -1));
   int cause = 0;

@@ -24,6 +24,8 @@ struct ProcessSpec {
   std::filesystem::path folder;        // working folder; empty: the parent's
   std::uint64_t max_memory_bytes = 0;  // RLIMIT_AS; 0: no limit
   int nice = 0;                        // added to the parent's
+  // Not empty: the child is confined (base/confinement.h) and may write below these folders only.
+  std::vector<std::filesystem::path> only_writable;
 };
 
 struct ExitStatus {
@@ -38,7 +40,7 @@ struct ExitStatus {
 class ChildProcess {
  public:
   // Throws Error{kUnavailable} when the program is not there, Error{kInternal} when no process can
-  // be made.
+  // be made or confined.
   explicit ChildProcess(const ProcessSpec& spec);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

@@ -13,7 +13,7 @@ find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(pugixml REQUIRED)
 
-foreach(library osmesa libserialport libusb-1.0 libmicrohttpd libsystemd fcl libhwy libzip tinygltf)
+foreach(library osmesa libserialport libusb-1.0 libmicrohttpd libseccomp libsystemd fcl libhwy libzip tinygltf)
   pkg_check_modules(${library} REQUIRED IMPORTED_TARGET ${library})
 endforeach()
 

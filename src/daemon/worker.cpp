@@ -37,6 +37,7 @@ ProcessResult run_child(const PrepareOrder& order, const fs::path& temporary,
   spec.folder = temporary;
   spec.nice = order.limits.nice;
   spec.max_memory_bytes = order.limits.memory_bytes;
+  spec.only_writable = {order.out.parent_path()};
   Clock::time_point told = Clock::now() - kReportEvery;
   const auto on_line = [&](std::string_view text) {
     const std::optional<ProgressLine> line = progress_line(text);
