@@ -8,6 +8,9 @@
 namespace packmerger {
 namespace {
 
+// Less than this share of the cost is not worth gluing for.
+constexpr double kLittleGain = 0.02;
+
 const Estimate* cheapest_unpacked(const Comparison& comparison) {
   const Estimate* best = nullptr;
   for (const std::optional<Estimate>* way :
@@ -79,11 +82,14 @@ std::string recommendation(const Comparison& comparison) {
   if (unpacked == nullptr) return "Pack it: in one piece it does not fit this printer.";
   const bool hollow = comparison.hollow && unpacked == &*comparison.hollow;
   const std::string other = hollow ? "hollow, in one piece" : "solid, in one piece";
-  if (packed.cost < unpacked->cost)
-    return fmt::format(
-        "Pack it: {:.2f} {} less than printing it {} ({:+.0f} % time, {:+.0f} % cost).",
-        unpacked->cost - packed.cost, packed.currency, other,
-        100 * (packed.time_s / unpacked->time_s - 1), 100 * (packed.cost / unpacked->cost - 1));
+  if (packed.cost < unpacked->cost) {
+    const bool little = packed.cost > (1 - kLittleGain) * unpacked->cost;
+    return fmt::format("{}: {:.2f} {} less than printing it {} ({:+.0f} % time, {:+.0f} % cost).",
+                       little ? "Little is to be gained by packing" : "Pack it",
+                       unpacked->cost - packed.cost, packed.currency, other,
+                       100 * (packed.time_s / unpacked->time_s - 1),
+                       100 * (packed.cost / unpacked->cost - 1));
+  }
   const double more = packed.cost - unpacked->cost;
   const std::string costs =
       more < 0.005 ? "as little" : fmt::format("{:.2f} {} less", more, packed.currency);

@@ -26,6 +26,15 @@ TEST(Recommendation, PacksWhenThatIsCheaper) {
       << "against the best way";
 }
 
+TEST(Recommendation, SaysWhenLittleIsToBeGained) {
+  Comparison ways;
+  ways.solid = costing(10);
+  ways.packed = costing(9.9);
+  EXPECT_EQ(recommendation(ways).find("Little is to be gained"), 0u) << recommendation(ways);
+  ways.packed = costing(9);
+  EXPECT_EQ(recommendation(ways).find("Pack it"), 0u) << recommendation(ways);
+}
+
 TEST(Recommendation, TellsTheTruthWhenPackingDoesNotPay) {
   Comparison ways;
   ways.solid = costing(10);
