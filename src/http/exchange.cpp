@@ -42,7 +42,7 @@ std::string numeric(const sockaddr* address) {
 }
 
 HttpReply plain(int status, const std::string& sentence) {
-  return {.status = status, .type = "text/plain; charset=utf-8", .body = sentence + "\n"};
+  return {.status = status, .type = "text/plain", .body = sentence + "\n"};
 }
 
 HttpReply refusal(int status) {

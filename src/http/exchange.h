@@ -26,6 +26,8 @@ class Exchange {
   MHD_Result step(MHD_Connection* connection, const char* method, const char* data,
                   std::size_t* size);
 
+  bool begun() const { return begun_; }  // the headers were looked at
+
  private:
   MHD_Result begin(MHD_Connection* connection, const char* method);
   MHD_Result begin_upload(MHD_Connection* connection, const TakeUpload& plan);

@@ -1,6 +1,7 @@
 #include "http/path.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace packmerger {
 namespace {
@@ -32,6 +33,21 @@ std::optional<std::string> percent_decoded(std::string_view text) {
     decoded += c;
   }
   return decoded;
+}
+
+std::string percent_encoded(std::string_view segment) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  constexpr std::string_view kPlain = "-._~";
+  std::string text;
+  for (const char c : segment) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && (std::isalnum(byte) != 0 || kPlain.find(c) != std::string_view::npos)) {
+      text += c;
+    } else {
+      text += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return text;
 }
 
 std::optional<std::string> decoded_path(std::string_view target) {

@@ -42,8 +42,12 @@ Descriptor listening_socket(const std::string& address, int port) {
 }  // namespace
 
 struct HttpServer::Daemon {
+  explicit Daemon(HttpHandler asked, HttpLimits limited)
+      : handler(std::move(asked)), limits(limited), patience(limited.patience) {}
+
   HttpHandler handler;
   HttpLimits limits;
+  Patience patience;
   MHD_Daemon* running = nullptr;
   int port = 0;
 
@@ -51,26 +55,57 @@ struct HttpServer::Daemon {
     const auto* self = static_cast<Daemon*>(closure);
     return new Exchange(target, self->handler, self->limits);
   }
-  static MHD_Result step(void*, MHD_Connection* connection, const char*, const char* method,
+  static MHD_Result step(void* closure, MHD_Connection* connection, const char*, const char* method,
                          const char*, const char* data, std::size_t* size, void** exchange) {
+    static_cast<Daemon*>(closure)->note(connection, *static_cast<Exchange*>(*exchange), *size);
     try {
       return static_cast<Exchange*>(*exchange)->step(connection, method, data, size);
     } catch (const std::exception&) {
       return MHD_NO;  // out of memory: the connection ends
     }
   }
-  static void ended(void*, MHD_Connection*, void** exchange, MHD_RequestTerminationCode) {
+  static void ended(void* closure, MHD_Connection* connection, void** exchange,
+                    MHD_RequestTerminationCode) {
     delete static_cast<Exchange*>(*exchange);
     *exchange = nullptr;
+    if (HttpSender* sender = sender_of(connection))
+      static_cast<Daemon*>(closure)->patience.awaits(sender, HttpSender::Awaits::kHeaders);
+  }
+  // Told of every connection, before its socket is closed too.
+  static void connection(void* closure, MHD_Connection* connection, void** sender,
+                         MHD_ConnectionNotificationCode code) {
+    Patience& patience = static_cast<Daemon*>(closure)->patience;
+    if (code == MHD_CONNECTION_NOTIFY_STARTED) {
+      const MHD_ConnectionInfo* info =
+          MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+      *sender = patience.begun(info->connect_fd);
+    } else {
+      patience.ended(static_cast<HttpSender*>(*sender));
+      *sender = nullptr;
+    }
+  }
+  static HttpSender* sender_of(MHD_Connection* connection) {
+    const MHD_ConnectionInfo* info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    return info == nullptr ? nullptr : static_cast<HttpSender*>(info->socket_context);
+  }
+  // What came of a request, before it is looked at: its headers, a piece of its body, or its end.
+  void note(MHD_Connection* connection, const Exchange& exchange, std::size_t bytes) {
+    HttpSender* sender = sender_of(connection);
+    if (sender == nullptr) return;
+    if (!exchange.begun())
+      patience.awaits(sender, HttpSender::Awaits::kBody);
+    else if (bytes > 0)
+      patience.received(sender, bytes);
+    else
+      patience.awaits(sender, HttpSender::Awaits::kNothing);
   }
   // Targets are decoded by decoded_path and decoded_query.
   static std::size_t as_it_is(void*, MHD_Connection*, char* text) { return std::strlen(text); }
 };
 
 HttpServer::HttpServer(const std::string& address, int port, HttpHandler handler, HttpLimits limits)
-    : daemon_(std::make_unique<Daemon>()) {
-  daemon_->handler = std::move(handler);
-  daemon_->limits = limits;
+    : daemon_(std::make_unique<Daemon>(std::move(handler), limits)) {
   Descriptor socket = listening_socket(address, port);
   sockaddr_in6 bound{};  // large enough for both families, which have the port at the same place
   socklen_t size = sizeof bound;
@@ -81,11 +116,12 @@ HttpServer::HttpServer(const std::string& address, int port, HttpHandler handler
   daemon_->running = MHD_start_daemon(
       flags, 0, nullptr, nullptr, Daemon::step, daemon_.get(), MHD_OPTION_LISTEN_SOCKET,
       socket.get(), MHD_OPTION_URI_LOG_CALLBACK, Daemon::begun, daemon_.get(),
-      MHD_OPTION_NOTIFY_COMPLETED, Daemon::ended, nullptr, MHD_OPTION_UNESCAPE_CALLBACK,
-      Daemon::as_it_is, nullptr, MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.memory_bytes,
-      MHD_OPTION_CONNECTION_LIMIT, limits.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-      limits.connections_of_a_peer, MHD_OPTION_CONNECTION_TIMEOUT, limits.idle_s,
-      MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+      MHD_OPTION_NOTIFY_COMPLETED, Daemon::ended, daemon_.get(), MHD_OPTION_NOTIFY_CONNECTION,
+      Daemon::connection, daemon_.get(), MHD_OPTION_UNESCAPE_CALLBACK, Daemon::as_it_is, nullptr,
+      MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.memory_bytes, MHD_OPTION_CONNECTION_LIMIT,
+      limits.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT, limits.connections_of_a_peer,
+      MHD_OPTION_CONNECTION_TIMEOUT, limits.idle_s, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+      MHD_OPTION_END);
   if (daemon_->running == nullptr)
     throw Error(Fault::kCannotWrite, "The web server cannot be started",
                 "Raise the limit on open files (ulimit -n) and start again.");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "http/message.h"
+#include "http/patience.h"
 
 namespace packmerger {
 
@@ -23,6 +24,7 @@ struct HttpLimits {
   unsigned connections = 64;
   unsigned connections_of_a_peer = 32;
   unsigned idle_s = 30;              // a connection on which nothing happens ends
+  PatienceLimits patience = {};      // and so does one on which too little happens
   std::size_t memory_bytes = 32768;  // of a connection: request line and headers
   std::size_t field_bytes = 4096;    // of a form's field that is no file
   std::size_t fields = 16;           // of a form, files included

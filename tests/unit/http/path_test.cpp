@@ -42,6 +42,18 @@ TEST(Path, NeverHoldsAWayUp) {
   }));
 }
 
+TEST(Path, WhatIsEncodedIsDecodedAgain) {
+  EXPECT_EQ(percent_encoded("a b/\xC3\xBC.stl"), "a%20b%2F%C3%BC.stl");
+  EXPECT_TRUE(rc::check([](const std::string& text) {
+    const std::string encoded = percent_encoded(text);
+    RC_ASSERT(encoded.find_first_of("/?#\" \r\n") == std::string::npos);
+    const bool is_text = std::none_of(text.begin(), text.end(), [](char c) {
+      return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    });
+    RC_ASSERT(percent_decoded(encoded) == (is_text ? std::optional(text) : std::nullopt));
+  }));
+}
+
 TEST(Query, FirstOfANameCounts) {
   const auto query = decoded_query("a=1&b=%20x&a=2&c&=d&e=%zz&f=");
   const std::map<std::string, std::string> expected = {
