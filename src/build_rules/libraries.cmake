@@ -13,9 +13,12 @@ find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(pugixml REQUIRED)
 
-foreach(library osmesa libserialport libusb-1.0 libmicrohttpd libseccomp libsystemd fcl libhwy libzip tinygltf)
+foreach(library osmesa libserialport libusb-1.0 libmicrohttpd libseccomp libsystemd fcl libhwy libzip tinygltf libcurl avahi-client)
   pkg_check_modules(${library} REQUIRED IMPORTED_TARGET ${library})
 endforeach()
+
+# Paho's synchronous client with TLS tells pkg-config nothing.
+find_library(PAHO_MQTT_LIBRARY paho-mqtt3cs REQUIRED)
 
 # CGAL is header-only here; it needs GMP and MPFR, and Boost's headers.
 find_library(GMP_LIBRARY gmp REQUIRED)

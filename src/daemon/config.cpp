@@ -178,6 +178,21 @@ void read_top(TableReader& reader, const fs::path& file, DaemonConfig& config) {
                 [&](double value) { config.retry_s = value; });
 }
 
+void read_webhooks(TableReader& top, const fs::path& file, DaemonConfig& config) {
+  top.key("webhook", "tables [[webhook]]", [&](const toml::node& node) {
+    const toml::array* list = node.as_array();
+    if (list == nullptr) return false;
+    for (const toml::node& item : *list) {
+      if (!item.is_table()) return false;
+      TableReader reader(file, item.as_table(), "webhook.", nullptr);
+      read_webhook(reader, config.webhooks.emplace_back());
+      if (config.webhooks.back().url.empty())
+        refuse(file, line_of(item), "[[webhook]] needs the key url");
+    }
+    return true;
+  });
+}
+
 toml::table parse(const fs::path& file) {
   try {
     const std::string text = read_file(file, kMaxConfigBytes);
@@ -216,7 +231,9 @@ DaemonConfig read_config(const fs::path& file) {
   TableReader top(file, &table, "", nullptr);
   read_top(top, file, config);
   const auto any = [](const toml::node&) { return true; };
-  for (const char* name : {"prepare", "watch", "web", "printer"}) top.key(name, "a table", any);
+  for (const char* name : {"prepare", "watch", "web", "mqtt", "printer"})
+    top.key(name, "a table", any);
+  read_webhooks(top, file, config);
   top.done();
   if (const toml::table* prepare = table_in(file, table, "prepare")) {
     TableReader reader(file, prepare, "prepare.", nullptr);
@@ -229,6 +246,11 @@ DaemonConfig read_config(const fs::path& file) {
   if (const toml::table* web = table_in(file, table, "web")) {
     TableReader reader(file, web, "web.", nullptr);
     read_web(reader, file, config.web);
+  }
+  if (const toml::table* mqtt = table_in(file, table, "mqtt")) {
+    TableReader reader(file, mqtt, "mqtt.", nullptr);
+    read_mqtt(reader, file, config.mqtt);
+    if (config.mqtt.broker.empty()) refuse(file, line_of(*mqtt), "[mqtt] needs the key broker");
   }
   if (config.state.empty())
     refuse(file, 1, "needs the key state: neither STATE_DIRECTORY nor HOME tells where to keep it");
@@ -266,6 +288,10 @@ std::vector<DaemonKey> daemon_keys() {
   read_watch(watch, config.watch);
   TableReader web(file, nullptr, "web.", &keys);
   read_web(web, file, config.web);
+  TableReader webhook(file, nullptr, "webhook.", &keys);
+  read_webhook(webhook, config.webhooks.emplace_back());
+  TableReader mqtt(file, nullptr, "mqtt.", &keys);
+  read_mqtt(mqtt, file, config.mqtt);
   TableReader printers(file, nullptr, "printer.NAME.", &keys);
   read_printer_keys(printers, file, printer);
   return keys;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/printer.h"
+#include "notify/notice.h"
 
 namespace packmerger {
 
@@ -65,6 +66,8 @@ struct DaemonConfig {
   PrepareConfig prepare;
   WatchConfig watch;
   WebConfig web;
+  std::vector<WebhookSettings> webhooks;
+  MqttSettings mqtt;
   double retry_s = 30;                  // between attempts to reach a printer, or to file a model
   std::vector<PrinterConfig> printers;  // by name
 

@@ -1,10 +1,29 @@
 #include "daemon/config_sections.h"
 
+#include <algorithm>
 #include <limits>
 
+#include "base/error.h"
 #include "base/files.h"
 
 namespace packmerger {
+namespace {
+
+constexpr std::uint64_t kMaxPasswordBytes = 4096;
+
+// Empty where the file cannot be read.
+std::string first_line_of(const fs::path& file) {
+  try {
+    const std::string text = read_file(file, kMaxPasswordBytes);
+    return text.substr(0, text.find_first_of("\r\n"));
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+bool is_blank_or_control(char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; }
+
+}  // namespace
 
 fs::path resolved(const fs::path& file, const std::string& text) {
   return (fs::absolute(file).parent_path() / text).lexically_normal();
@@ -64,6 +83,49 @@ void read_web(TableReader& reader, const fs::path& file, WebConfig& web) {
                  });
   reader.text("page", "the path of a folder", [&](const std::string& text) {
     web.page = resolved(file, text);
+    return true;
+  });
+  reader.done();
+}
+
+void read_webhook(TableReader& reader, WebhookSettings& webhook) {
+  reader.text("url", "an address that begins with http:// or https://",
+              [&](const std::string& text) {
+                webhook.url = text;
+                return (text.starts_with("http://") || text.starts_with("https://")) &&
+                       std::none_of(text.begin(), text.end(), is_blank_or_control);
+              });
+  reader.text("secret", "a text", [&](const std::string& text) {
+    webhook.secret = text;
+    return true;
+  });
+  reader.done();
+}
+
+void read_mqtt(TableReader& reader, const fs::path& file, MqttSettings& mqtt) {
+  reader.text("broker", "HOST or HOST:PORT", [&](const std::string& text) {
+    mqtt.broker = text;
+    return text.find('/') == std::string::npos &&
+           std::none_of(text.begin(), text.end(), is_blank_or_control);
+  });
+  reader.text("topic", "a topic without + and #, that neither begins nor ends with /",
+              [&](const std::string& text) {
+                mqtt.topic = text;
+                return text.find_first_of("+#") == std::string::npos && text.front() != '/' &&
+                       text.front() != '$' && text.back() != '/' && text.size() <= 1024;
+              });
+  reader.text("user", "a text", [&](const std::string& text) {
+    mqtt.user = text;
+    return true;
+  });
+  reader.text("password_file", "the path of a file whose first line is the password",
+              [&](const std::string& text) {
+                mqtt.password = first_line_of(resolved(file, text));
+                return !mqtt.password.empty();
+              });
+  reader.flag("tls", [&](bool value) { mqtt.tls = value; });
+  reader.text("ca_file", "the path of a file of certificates (PEM)", [&](const std::string& text) {
+    mqtt.ca_file = resolved(file, text).string();
     return true;
   });
   reader.done();

@@ -12,5 +12,7 @@ std::filesystem::path resolved(const std::filesystem::path& file, const std::str
 void read_prepare(TableReader& reader, const std::filesystem::path& file, PrepareConfig& prepare);
 void read_watch(TableReader& reader, WatchConfig& watch);
 void read_web(TableReader& reader, const std::filesystem::path& file, WebConfig& web);
+void read_webhook(TableReader& reader, WebhookSettings& webhook);
+void read_mqtt(TableReader& reader, const std::filesystem::path& file, MqttSettings& mqtt);
 
 }  // namespace packmerger

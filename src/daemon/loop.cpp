@@ -19,6 +19,7 @@
 #include "daemon/front_desk.h"
 #include "daemon/job_view.h"
 #include "daemon/move_file.h"
+#include "daemon/news.h"
 #include "daemon/reload.h"
 #include "daemon/service_manager.h"
 #include "daemon/socket_server.h"
@@ -99,12 +100,13 @@ struct Watch {
 class Loop {
  public:
   Loop(const DaemonConfig& config, Foreman& foreman, Queue<Event>& events, SocketServer& server,
-       FrontDesk& desk, ServiceManager& manager, Reload& reload, const Log& log)
+       FrontDesk& desk, News& news, ServiceManager& manager, Reload& reload, const Log& log)
       : config_(config),
         foreman_(foreman),
         events_(events),
         server_(server),
         desk_(desk),
+        news_(news),
         manager_(manager),
         reload_(reload),
         log_(log) {
@@ -126,6 +128,7 @@ class Loop {
       }
       server_.serve(now_s());
       desk_.serve(now_s());
+      news_.serve(now_s());
       manager_.status(daemon_status(foreman_));
       manager_.alive(now_s());
       wait(signals);
@@ -212,6 +215,7 @@ class Loop {
     }
     server_.add_to(waiting);
     desk_.add_to(waiting);
+    news_.add_to(waiting);
     if (!unhandled_.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(200));
     const int timeout_ms = std::max(0, static_cast<int>(1000 * (until - now_s()))) + 1;
     ::poll(waiting.data(), waiting.size(), timeout_ms);
@@ -222,6 +226,7 @@ class Loop {
   Queue<Event>& events_;
   SocketServer& server_;
   FrontDesk& desk_;
+  News& news_;
   ServiceManager& manager_;
   Reload& reload_;
   const Log& log_;
@@ -257,9 +262,10 @@ void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
     SocketServer server(config.socket, config.socket_mode,
                         [&](std::string_view request) { return answer(foreman, keys, request); });
     FrontDesk desk(config, foreman, keys, log);
+    News news(config, foreman, store, log);
     ServiceManager manager;
     Reload reload(config, read, foreman, threads, log);
-    Loop loop(config, foreman, events, server, desk, manager, reload, log);
+    Loop loop(config, foreman, events, server, desk, news, manager, reload, log);
     log("listening at " + config.socket.string());
     if (config.printers.empty())
       log("no printer is configured: add a table [printer.NAME] to the settings, and reload them");

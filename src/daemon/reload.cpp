@@ -76,6 +76,8 @@ void Reload::read() {
       log_("warning: a change of " + joined(keys) + " counts when the daemon is started again");
     config_.prepare = wanted.prepare;
     config_.watch = wanted.watch;
+    config_.webhooks = wanted.webhooks;
+    config_.mqtt = wanted.mqtt;
     config_.retry_s = wanted.retry_s;
     wanted_ = std::move(wanted.printers);
     log_("settings read again");

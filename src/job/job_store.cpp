@@ -14,6 +14,7 @@ using sqlite::Transaction;
 
 struct JobStore::Database {
   Connection connection;
+  Listener listener;
   explicit Database(const std::filesystem::path& file) : connection(file) {}
 };
 
@@ -167,6 +168,7 @@ JobRecord JobStore::add(JobRecord job) {
   job.id = sqlite3_last_insert_rowid(connection.get());
   write_event(connection, job, "");
   transaction.commit();
+  if (database_->listener) database_->listener(job, "");
   return job;
 }
 
@@ -182,10 +184,14 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
                           ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
   bind_job(statement, job);
   statement.bind(job.id).finish();
-  if (before->state != job.state || !note.empty()) write_event(connection, job, note);
+  const bool is_told = before->state != job.state || !note.empty();
+  if (is_told) write_event(connection, job, note);
   if (printer != nullptr) write_printer(connection, *printer);
   transaction.commit();
+  if (is_told && database_->listener) database_->listener(job, note);
 }
+
+void JobStore::listen(Listener listener) { database_->listener = std::move(listener); }
 
 void JobStore::forget(std::int64_t id) {
   Connection& connection = database_->connection;

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,6 +75,11 @@ class JobStore {
   // With printer, both are written in one step.
   void save(const JobRecord& job, std::string_view note = {},
             const PrinterRecord* printer = nullptr);
+
+  // Called after every line that was written into a history, with the job as it is then. It must
+  // not write to the store.
+  using Listener = std::function<void(const JobRecord& job, std::string_view note)>;
+  void listen(Listener listener);
 
   // Forgets a job that is still being claimed: its file never left the watched folder.
   void forget(std::int64_t id);

@@ -21,11 +21,13 @@ MAY_INCLUDE = {
     "tray": {"picture", "model", "base"},
     "firmware_io": {"base"},
     "http": {"base"},
+    "notify": {"base"},
     "job": {"tray", "picture", "pack", "printers", "shape", "offscreen", "model", "base"},
 }
 EVERYTHING = {"daemon", "cli", "install"}
 FOLDERS = set(MAY_INCLUDE) | EVERYTHING
-OWNERS = {r"tetgen\.h": "one file", r"GL/osmesa\.h": "offscreen", r"microhttpd\.h": "http"}
+OWNERS = {r"tetgen\.h": "one file", r"GL/osmesa\.h": "offscreen", r"microhttpd\.h": "http",
+          r"(curl/.*|MQTTClient|avahi-.*)\.h": "notify"}
 
 LONG_LINES, TOO_LONG_LINES = 300, 450
 # spelled in pieces, so that this file does not contain them

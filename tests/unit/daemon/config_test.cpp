@@ -130,9 +130,45 @@ TEST_F(ConfigTest, TellsFileLineAndWhatWasExpected) {
        "d.toml:4: [printer.n] has the port of another printer"},
       {"socket = \"/" + std::string(200, 'x') + "\"\n" + printer, "d.toml:1: socket: expected"},
       {"[printer.m\n", "d.toml:1: "},
+      {"webhook = 1\n" + printer, "d.toml:1: webhook: expected tables [[webhook]]"},
+      {"[[webhook]]\nsecret = \"x\"\n", "d.toml:1: [[webhook]] needs the key url"},
+      {"[[webhook]]\nurl = \"ftp://x/\"\n", "d.toml:2: webhook.url: expected an address"},
+      {"[[webhook]]\nurl = \"http://x y/\"\n", "d.toml:2: webhook.url: expected an address"},
+      {"[[webhook]]\nurl = \"http://x/\"\nkey = 1\n", "d.toml:3: unknown key webhook.key"},
+      {"[mqtt]\ntopic = \"a\"\n", "d.toml:1: [mqtt] needs the key broker"},
+      {"[mqtt]\nbroker = \"mqtt://x\"\n", "d.toml:2: mqtt.broker: expected HOST"},
+      {"[mqtt]\nbroker = \"x\"\ntopic = \"a/#\"\n", "d.toml:3: mqtt.topic: expected a topic"},
+      {"[mqtt]\nbroker = \"x\"\npassword_file = \"none\"\n", "d.toml:3: mqtt.password_file:"},
   };
   for (const auto& [text, expected] : cases)
     EXPECT_THAT(refusal(text), HasSubstr(expected)) << text;
+}
+
+TEST_F(ConfigTest, NamesWhoIsTold) {
+  std::ofstream(folder_.path() / "word") << "pass word\nmore\n";
+  std::ofstream(folder_.path() / "n.toml") << R"(state = "s"
+[[webhook]]
+url = "https://a.example/x"
+secret = "y"
+[[webhook]]
+url = "http://b.example/"
+[mqtt]
+broker = "c.example:99"
+topic = "a/b"
+user = "me"
+password_file = "word"
+tls = true
+ca_file = "ca.pem"
+)";
+  const DaemonConfig config = read_config(folder_.path() / "n.toml");
+  ASSERT_EQ(config.webhooks.size(), 2U);
+  EXPECT_EQ(config.webhooks[0].secret, "y");
+  EXPECT_EQ(config.webhooks[1].url, "http://b.example/");
+  EXPECT_EQ(config.mqtt.broker, "c.example:99");
+  EXPECT_EQ(config.mqtt.topic, "a/b");
+  EXPECT_EQ(config.mqtt.password, "pass word");
+  EXPECT_TRUE(config.mqtt.tls);
+  EXPECT_EQ(config.mqtt.ca_file, (folder_.path() / "ca.pem").string());
 }
 
 TEST_F(ConfigTest, PrintersMayComeLater) {

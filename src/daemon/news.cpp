@@ -1,0 +1,112 @@
+#include "daemon/news.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "daemon/job_view.h"
+
+namespace packmerger {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kLookEvery_s = 0.5;  // at the printers
+
+std::string text_of(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+News::News(const DaemonConfig& config, const Foreman& foreman, JobStore& store, Log log)
+    : config_(config),
+      foreman_(foreman),
+      store_(store),
+      log_(std::move(log)),
+      dead_(config.state / "undelivered.jsonl") {
+  follow_settings();
+  store_.listen([this](const JobRecord& job, std::string_view note) {
+    if (has_readers() && job.state != JobState::kClaiming)
+      jobs_.push_back({job, std::string(note), wall_clock_s()});
+  });
+}
+
+News::~News() {
+  store_.listen({});
+  tell_jobs();
+}
+
+void News::add_to(std::vector<pollfd>& waiting) const {
+  waiting.push_back({lines_.fd(), POLLIN, 0});
+}
+
+void News::serve(double now_s) {
+  while (const std::optional<std::string> line = lines_.try_pop()) log_(*line);
+  follow_settings();
+  if (!has_readers()) return;
+  tell_jobs();
+  if (now_s - told_s_ < kLookEvery_s) return;
+  told_s_ = now_s;
+  tell_printers();
+}
+
+void News::follow_settings() {
+  const TellLine tell = [this](const std::string& line) { lines_.push(line); };
+  const auto is_wanted = [&](const WebhookSettings& settings) {
+    return std::find(config_.webhooks.begin(), config_.webhooks.end(), settings) !=
+           config_.webhooks.end();
+  };
+  webhooks_.remove_if([&](const Webhook& webhook) { return !is_wanted(webhook.settings()); });
+  for (const WebhookSettings& settings : config_.webhooks)
+    if (std::none_of(webhooks_.begin(), webhooks_.end(),
+                     [&](const Webhook& webhook) { return webhook.settings() == settings; }))
+      webhooks_.emplace_back(settings, dead_, tell);
+  if (mqtt_ && mqtt_->settings() != config_.mqtt) mqtt_.reset();
+  if (mqtt_ || config_.mqtt.broker.empty()) return;
+  mqtt_.emplace(config_.mqtt, tell);
+  printers_.clear();  // a broker is told everything
+}
+
+void News::tell_jobs() {
+  for (const Line& line : std::exchange(jobs_, {}))
+    tell({"printers/" + line.job.printer + "/job",
+          text_of({{"event", "job"},
+                   {"at_s", line.at_s},
+                   {"note", line.note},
+                   {"job", job_view(foreman_, line.job)}})});
+}
+
+// How a print gets on is no change of state: pages watch that by /api/v1/events.
+void News::tell_printers() {
+  forget_removed_printers();
+  for (const PrinterConfig& printer : config_.printers) {
+    json view = printer_view(foreman_, printer);
+    json& print = view["print"];
+    view["stage"] = print.is_object() ? print["stage"] : json();
+    view.erase("print");
+    std::string state = text_of(view);
+    std::string& told = printers_[printer.name];
+    if (told == state) continue;
+    told = std::move(state);
+    tell({"printers/" + printer.name,
+          text_of({{"event", "printer"}, {"at_s", wall_clock_s()}, {"printer", view}})});
+  }
+}
+
+// A broker keeps what it was told until it is told nothing.
+void News::forget_removed_printers() {
+  std::erase_if(printers_, [&](const auto& told) {
+    if (config_.printer(told.first) != nullptr) return false;
+    if (mqtt_) mqtt_->push({"printers/" + told.first, ""});
+    if (mqtt_) mqtt_->push({"printers/" + told.first + "/job", ""});
+    return true;
+  });
+}
+
+void News::tell(const Notice& notice) {
+  for (Webhook& webhook : webhooks_) webhook.push(notice);
+  if (mqtt_) mqtt_->push(notice);
+}
+
+}  // namespace packmerger

@@ -1,0 +1,170 @@
+#include "notify/webhook.h"
+
+#include <curl/curl.h>
+#include <openssl/hmac.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <random>
+
+namespace packmerger {
+namespace {
+
+constexpr double kFarewell_s = 2;
+constexpr std::size_t kMostAnswer = 65536;  // bytes, of which nothing is kept
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string hex(const unsigned char* bytes, std::size_t count) {
+  constexpr std::string_view kHex = "0123456789abcdef";
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) text += {kHex[bytes[i] >> 4], kHex[bytes[i] & 15]};
+  return text;
+}
+
+std::string new_delivery() {
+  std::random_device random;
+  std::array<unsigned char, 16> bytes;
+  for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(random());
+  return hex(bytes.data(), bytes.size());
+}
+
+std::size_t swallow(char*, std::size_t size, std::size_t count, void* taken) {
+  auto& total = *static_cast<std::size_t*>(taken);
+  total += size * count;
+  return total > kMostAnswer ? 0 : size * count;
+}
+
+int is_to_end(void* ends_s, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  return now_s() > *static_cast<const std::atomic<double>*>(ends_s) ? 1 : 0;
+}
+
+// Whether another try may help.
+bool may_pass(long status) { return status == 408 || status == 429 || status >= 500; }
+
+}  // namespace
+
+std::string webhook_signature(const std::string& secret, const std::string& body) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes;
+  unsigned size = 0;
+  HMAC(EVP_sha256(), secret.data(), static_cast<int>(secret.size()),
+       reinterpret_cast<const unsigned char*>(body.data()), body.size(), bytes.data(), &size);
+  return "sha256=" + hex(bytes.data(), size);
+}
+
+struct Webhook::Letter {
+  std::string body;
+  std::string delivery;
+  int tries = 0;
+};
+
+// One connection, kept from message to message.
+struct Webhook::Courier {
+  std::unique_ptr<CURL, void (*)(CURL*)> curl{curl_easy_init(), curl_easy_cleanup};
+
+  // Empty: it was taken. Otherwise why not, and whether to try again.
+  struct Outcome {
+    std::string why;
+    bool again = false;
+  };
+
+  Outcome bring(const Letter& letter, const Webhook& hook) {
+    if (curl == nullptr) return {"out of memory", true};
+    curl_slist* list = nullptr;
+    const auto add = [&](const std::string& line) { list = curl_slist_append(list, line.c_str()); };
+    add("Content-Type: application/json");
+    add("X-PackMerger-Delivery: " + letter.delivery);
+    add("Expect:");
+    if (const std::string& secret = hook.settings_.secret; !secret.empty())
+      add("X-PackMerger-Signature: " + webhook_signature(secret, letter.body));
+    const std::unique_ptr<curl_slist, void (*)(curl_slist*)> headers(list, curl_slist_free_all);
+    std::size_t taken = 0;
+    std::array<char, CURL_ERROR_SIZE> trouble{};
+    CURL* handle = curl.get();
+    curl_easy_setopt(handle, CURLOPT_URL, hook.settings_.url.c_str());
+    curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
+    curl_easy_setopt(handle, CURLOPT_USERAGENT, "PackMerger");
+    curl_easy_setopt(handle, CURLOPT_HTTPHEADER, list);
+    curl_easy_setopt(handle, CURLOPT_POSTFIELDSIZE_LARGE,
+                     static_cast<curl_off_t>(letter.body.size()));
+    curl_easy_setopt(handle, CURLOPT_POSTFIELDS, letter.body.c_str());
+    curl_easy_setopt(handle, CURLOPT_FOLLOWLOCATION, 0L);
+    curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * hook.limits_.answer_s));
+    curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
+    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, trouble.data());
+    curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, swallow);
+    curl_easy_setopt(handle, CURLOPT_WRITEDATA, &taken);
+    curl_easy_setopt(handle, CURLOPT_NOPROGRESS, 0L);
+    curl_easy_setopt(handle, CURLOPT_XFERINFOFUNCTION, is_to_end);
+    curl_easy_setopt(handle, CURLOPT_XFERINFODATA, &hook.ends_s_);
+    const CURLcode code = curl_easy_perform(handle);
+    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, nullptr);
+    long status = 0;
+    curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
+    const bool is_whole = code == CURLE_OK || code == CURLE_WRITE_ERROR;  // a long answer is one
+    if (is_whole && status >= 200 && status < 300) return {};
+    if (is_whole) return {"HTTP " + std::to_string(status), may_pass(status)};
+    return {trouble[0] != 0 ? trouble.data() : curl_easy_strerror(code), true};
+  }
+};
+
+Webhook::Webhook(WebhookSettings settings, DeadLetters& dead, TellLine tell, WebhookLimits limits)
+    : settings_(std::move(settings)), dead_(dead), tell_(std::move(tell)), limits_(limits) {
+  curl_global_init(CURL_GLOBAL_DEFAULT);
+  thread_ = std::thread([this] { run(); });
+}
+
+Webhook::~Webhook() {
+  ends_s_ = now_s() + kFarewell_s;
+  queue_.close();
+  thread_.join();
+  curl_global_cleanup();
+}
+
+void Webhook::run() {
+  Courier courier;
+  std::deque<Letter> waiting;
+  double next_s = 0;
+  bool is_told = false;  // that it does not answer; once until it does
+  const auto give_up = [&](const std::string& why) {
+    dead_.keep(settings_.url, why, waiting.front().body);
+    waiting.pop_front();
+  };
+  for (;;) {
+    const bool ends = queue_.closed();
+    while (std::optional<Notice> notice = queue_.try_pop())
+      waiting.push_back({std::move(notice->body), new_delivery()});
+    while (waiting.size() > limits_.most_waiting) give_up("too many messages waited");
+    if (ends && (waiting.empty() || is_told || now_s() > ends_s_)) break;
+    const double wait_s = waiting.empty() ? 1e6 : next_s - now_s();
+    if (wait_s > 0) {
+      pollfd news{queue_.fd(), POLLIN, 0};
+      ::poll(&news, 1, static_cast<int>(std::min(1000 * wait_s, 1e9)) + 1);
+      continue;
+    }
+    Letter& letter = waiting.front();
+    const Courier::Outcome outcome = courier.bring(letter, *this);
+    if (outcome.why.empty()) {
+      if (is_told) tell_("webhook " + settings_.url + ": answers again");
+      is_told = false;
+      waiting.pop_front();
+      continue;
+    }
+    if (!is_told) tell_("webhook " + settings_.url + ": " + outcome.why);
+    is_told = true;
+    next_s = now_s() + limits_.first_retry_s * (1 << letter.tries);
+    if (++letter.tries < limits_.tries && outcome.again) continue;
+    next_s = 0;
+    give_up(outcome.why);
+  }
+  while (!waiting.empty()) give_up("the daemon ended");
+}
+
+}  // namespace packmerger
