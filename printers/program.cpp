@@ -20,9 +20,9 @@ constexpr std::uint64_t kMaxProgramBytes = std::uint64_t{4} << 30;
 constexpr std::size_t kMaxNameLength = 31;
 constexpr char kEndOfBuild = '\x9A';
 
-bool start_has(const Profile& profile, std::initializer_list<std::pair<char, int>> commands) {
+bool has_one_of(std::string_view gcode, std::initializer_list<std::pair<char, int>> commands) {
   bool found = false;
-  for_each_line(profile.slicer.start_gcode, [&](std::string_view text, int) {
+  for_each_line(gcode, [&](std::string_view text, int) {
     const GcodeLine line(text);
     for (const auto& [letter, number] : commands) found = found || line.is(letter, number);
     return !found;
@@ -31,18 +31,21 @@ bool start_has(const Profile& profile, std::initializer_list<std::pair<char, int
 }
 
 // A Replicator that was not homed, does not know where home is or extrudes cold breaks something.
+// What the text lacks, with the codes that would do; nothing where it is complete.
+std::optional<std::string> missing_in_s3g_start(std::string_view gcode) {
+  if (!has_one_of(gcode, {{'G', 161}, {'G', 162}, {'G', 28}})) return "homing (G161, G162 or G28)";
+  if (!has_one_of(gcode, {{'M', 132}})) return "the recall of the home position (M132)";
+  if (!has_one_of(gcode, {{'M', 133}, {'M', 116}, {'M', 109}, {'M', 6}}))
+    return "a wait for the heat (M133, M116, M109 or M6)";
+  return std::nullopt;
+}
+
 void check_s3g_start(const Profile& profile) {
-  const auto need = [&](bool there, const char* what, const char* codes) {
-    if (there) return;
-    throw Error(
-        Fault::kBadProfile,
-        fmt::format("Profile {}: slicer.start_gcode lacks {} ({})", profile.id, what, codes),
-        "Add it to the profile's start text; nothing is made that could harm the machine.");
-  };
-  need(start_has(profile, {{'G', 161}, {'G', 162}, {'G', 28}}), "homing", "G161, G162 or G28");
-  need(start_has(profile, {{'M', 132}}), "the recall of the home position", "M132");
-  need(start_has(profile, {{'M', 133}, {'M', 116}, {'M', 109}, {'M', 6}}), "a wait for the heat",
-       "M133, M116, M109 or M6");
+  const std::optional<std::string> missing = missing_in_s3g_start(profile.slicer.start_gcode);
+  if (!missing) return;
+  throw Error(Fault::kBadProfile,
+              fmt::format("Profile {}: slicer.start_gcode lacks {}", profile.id, *missing),
+              "Add it to the profile's start text; nothing is made that could harm the machine.");
 }
 
 void check_volume(const Profile& profile, std::string_view gcode) {
@@ -98,6 +101,14 @@ std::string to_x3g(const Profile& profile, const std::string& gcode, const std::
 }
 
 }  // namespace
+
+std::string converted_to_x3g(const Profile& profile, const std::string& gcode,
+                             const std::string& build_name, const Progress& progress) {
+  if (const std::optional<std::string> missing = missing_in_s3g_start(gcode))
+    throw Error(Fault::kBadInput, "The program lacks " + *missing + ", and could harm the machine",
+                "Let the slicer write the machine's own start text, or give it an .x3g file.");
+  return to_x3g(profile, gcode, build_name, progress);
+}
 
 std::optional<Program> make_program(const Profile& profile, const Tray& tray,
                                     const std::string& build_name, const Progress& progress) {

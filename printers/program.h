@@ -28,4 +28,10 @@ struct Program {
 std::optional<Program> make_program(const Profile& profile, const Tray& tray,
                                     const std::string& build_name, const Progress& progress);
 
+// Somebody else's G-code for a printer of dialect s3g, as make_program() converts its own. Throws
+// Error{kBadInput} when it lacks homing, position recall or a heat wait, and otherwise as
+// make_program().
+std::string converted_to_x3g(const Profile& profile, const std::string& gcode,
+                             const std::string& build_name, const Progress& progress);
+
 }  // namespace packmerger

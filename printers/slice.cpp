@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -15,7 +14,8 @@
 #include "model/stl.h"
 #include "printers/check_moves.h"
 #include "printers/estimate.h"
-#include "printers/gcode_line.h"
+#include "printers/extruded.h"
+#include "printers/slicer_comments.h"
 #include "printers/slicer_settings.h"
 
 namespace packmerger {
@@ -63,22 +63,6 @@ void check_contents(const Profile& profile, const Box3& box) {
                 "Lower the tray's contents to z = 0.");
 }
 
-// "1d 2h 3m 4s" → seconds.
-double seconds_of(std::string_view text) {
-  double total = 0;
-  while (!text.empty()) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    int value = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc() || end == text.data() + text.size()) break;
-    const std::map<char, int> units{{'d', 86400}, {'h', 3600}, {'m', 60}, {'s', 1}};
-    const auto unit = units.find(*end);
-    if (unit != units.end()) total += value * unit->second;
-    text.remove_prefix(static_cast<std::size_t>(end + 1 - text.data()));
-  }
-  return total;
-}
-
 // What follows `label` on the last line that holds it.
 std::string_view after(std::string_view gcode, std::string_view label) {
   const std::size_t at = gcode.rfind(label);
@@ -87,34 +71,6 @@ std::string_view after(std::string_view gcode, std::string_view label) {
                 "Install the PrusaSlicer that comes with Debian 12 (2.5.0).");
   const std::string_view rest = gcode.substr(at + label.size());
   return rest.substr(0, rest.find('\n'));
-}
-
-// mm of filament pushed out while an axis moves, for everything but support, and for support.
-// Retractions and their returns move the filament alone and do not count.
-struct Extruded {
-  double model_mm = 0;
-  double support_mm = 0;
-};
-
-Extruded extruded(std::string_view gcode) {
-  constexpr std::string_view kType = ";TYPE:";
-  Extruded sum;
-  bool support = false;
-  double e = 0;
-  for_each_line(gcode, [&](std::string_view text, int) {
-    if (text.starts_with(kType)) {
-      support = text.substr(kType.size()).starts_with("Support material");
-      return true;
-    }
-    const GcodeLine line(text);
-    if (line.letter() != 'G' || !line.value('E')) return true;
-    const double to = *line.value('E');
-    if (!line.is('G', 92) && to > e && (line.has('X') || line.has('Y')))
-      (support ? sum.support_mm : sum.model_mm) += to - e;
-    e = to;
-    return true;
-  });
-  return sum;
 }
 
 void run_slicer(const fs::path& folder, const Progress& progress) {
@@ -168,7 +124,7 @@ SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
   sliced.gcode = read_file(folder.path() / "tray.gcode", kMaxGcodeBytes);
   const std::map<std::string, std::string> used = settings_used(sliced.gcode);
   check_settings_used(profile, used);
-  sliced.time_s = seconds_of(after(sliced.gcode, "; estimated printing time (normal mode) = "));
+  sliced.time_s = slicer_seconds(after(sliced.gcode, "; estimated printing time (normal mode) = "));
   const double diameter_mm = std::stod(used.at("filament_diameter"));
   const double section_mm2 = std::numbers::pi * diameter_mm * diameter_mm / 4;
   const Extruded length = extruded(sliced.gcode);

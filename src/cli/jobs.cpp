@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/duration.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
 #include "job/comparison_table.h"
@@ -33,6 +34,45 @@ void print_line(const char* name, const std::string& text) {
   if (!text.empty()) fmt::print("{:<10} {}\n", name, text);
 }
 
+// "printing 42 %, line 120 of 300, 0:12:34 elapsed, 0:17:20 left"
+std::string print_text(const json& print) {
+  std::string text =
+      fmt::format("{} {:.0f} %", text_of(print, "stage"), 100 * print.value("fraction", 0.0));
+  if (const auto total = print.value("total", 0ULL); total > 0)
+    text += fmt::format(", {} {} of {}", text_of(print, "unit"), print.value("done", 0ULL), total);
+  text += ", " + duration_text(print.value("elapsed_s", 0.0)) + " elapsed";
+  if (const json left = print.value("remaining_s", json()); left.is_number())
+    text += ", " + duration_text(left.get<double>()) + " left";
+  return text;
+}
+
+// Where the figures of somebody else's program come from.
+std::string source_text(const json& estimate) {
+  return source_named(text_of(estimate, "source")) == EstimateSource::kProgram
+             ? "says the program itself"
+             : "counted from its moves alone";
+}
+
+void print_program(const json& job) {
+  print_line("kind", "a program, printed as it is");
+  const json estimates = job.value("estimates", json());
+  const json estimate = estimates.is_object() ? estimates.value("as_is", json()) : json();
+  if (!estimate.is_object()) return;
+  std::string text =
+      spoken_time(estimate.value("time_s", 0.0)) + " (" + source_text(estimate) + ")";
+  if (const json grams = estimate.value("model_g", json()); grams.is_number())
+    text +=
+        fmt::format(", {:.1f} g, {:.2f} {}", grams.get<double>() + estimate.value("support_g", 0.0),
+                    estimate.value("cost", 0.0), text_of(estimate, "currency"));
+  print_line("estimate", text);
+}
+
+void print_comparison(const json& job) {
+  const json estimates = job.value("estimates", json());
+  if (estimates.is_object())
+    fmt::print("\n{}", comparison_table(comparison_of(estimates), text_of(job, "printer")));
+}
+
 void print_history(const json& job) {
   fmt::print("\n");
   for (const json& event : job.value("history", json::array()))
@@ -48,13 +88,16 @@ void show(const Arguments& arguments) {
   print_line("state", text_of(job, "state"));
   print_line("status", text_of(job, "status"));
   print_line("hint", text_of(job, "hint"));
+  if (const json print = job.value("progress", json());
+      print.is_object() && text_of(job, "state") == "sending")
+    print_line("print", print_text(print));
   print_line("received", time_text(job.value("received_s", json())));
   print_line("ended", time_text(job.value("ended_s", json())));
   print_line("folder", text_of(job, "folder"));
-  print_line("model", text_of(job, "filed"));
-  const json estimates = job.value("estimates", json());
-  if (estimates.is_object())
-    fmt::print("\n{}", comparison_table(comparison_of(estimates), text_of(job, "printer")));
+  print_line("filed", text_of(job, "filed"));
+  if (const json same = job.value("same_as", json()); same.is_number())
+    print_line("bytes", fmt::format("the same as job {}", same.get<std::int64_t>()));
+  text_of(job, "kind") == "program" ? print_program(job) : print_comparison(job);
   print_history(job);
 }
 

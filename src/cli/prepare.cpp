@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <iostream>
 #include <map>
 #include <memory>
 
 #include "cli/plan_options.h"
+#include "cli/ready_program.h"
 #include "cli/verb.h"
+#include "daemon/job_file.h"
 #include "job/comparison_table.h"
 #include "tray/job_json.h"
+#include "tray/write_job_folder.h"
 
 namespace packmerger::cli {
 namespace {
@@ -35,8 +40,47 @@ void tell(const Job& job, const std::string& out) {
     fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
 }
 
-void run(const Arguments& arguments) {
+// Options that make sense for a ready program; the others are about models.
+constexpr std::array<std::string_view, 6> kOfPrograms = {"MODEL", "--profile", "--out",
+                                                         "--set", "--json",    "--help"};
+
+void check_alone(const Arguments& arguments, const CLI::App& verb) {
+  if (arguments.plan.models.size() > 1)
+    throw Error(Fault::kUsage, "A program is printed as it is, alone on its tray",
+                "Prepare it by itself.");
+  for (const CLI::Option* option : verb.get_options())
+    if (option->count() > 0 &&
+        std::find(kOfPrograms.begin(), kOfPrograms.end(), option->get_name()) == kOfPrograms.end())
+      throw Error(Fault::kUsage,
+                  "A program is printed as it is: " + option->get_name() + " is for models",
+                  "Leave it away, or name the model.");
+}
+
+void take_as_it_is(const Arguments& arguments, const Profile& profile) {
+  check_job_folder(arguments.out);
+  ReadyProgram program;
+  {
+    const Progress progress = terminal_progress();
+    program = read_ready_program(profile, arguments.plan.models.front(), progress);
+    write_program_folder(program, arguments.out);
+  }
+  if (arguments.json) {
+    std::cout << program_report(program);
+    return;
+  }
+  fmt::print("{}", told_of(program));
+  for (const Warning& warning : program.warnings)
+    fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
+}
+
+void run(const Arguments& arguments, const CLI::App& verb) {
   const Profile profile = chosen_profile(arguments.profile, arguments.plan);
+  const auto& models = arguments.plan.models;
+  if (std::any_of(models.begin(), models.end(),
+                  [](const auto& name) { return is_program(name); })) {
+    check_alone(arguments, verb);
+    return take_as_it_is(arguments, profile);
+  }
   Job job;
   {
     const Progress progress = terminal_progress();
@@ -53,8 +97,10 @@ void run(const Arguments& arguments) {
 
 void add_prepare(CLI::App& program) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = program.add_subcommand(
-      "prepare", "Prepares models for a printer: writes a job folder that can be sent");
+  CLI::App* verb = program.add_subcommand("prepare",
+                                          "Prepares models for a printer: writes a job folder that "
+                                          "can be sent; a program (G-code, x3g) "
+                                          "is checked and taken as it is");
   add_plan_options(*verb, arguments->plan);
   verb->add_option("--profile", arguments->profile, "a profile's id, or the path of a TOML file")
       ->type_name("PROFILE")
@@ -66,7 +112,7 @@ void add_prepare(CLI::App& program) {
       ->transform(CLI::CheckedTransformer(kVariants))
       ->default_str("packed");
   verb->add_flag("--json", arguments->json, "prints job.json instead of the table");
-  verb->callback([arguments] { run(*arguments); });
+  verb->callback([arguments, verb] { run(*arguments, *verb); });
 }
 
 }  // namespace packmerger::cli

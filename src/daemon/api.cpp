@@ -174,10 +174,8 @@ std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request) {
   return answered([&] { return result_of(foreman, keys, request); });
 }
 
-std::string answer_upload(Foreman& foreman, const WebUpload& upload) {
-  return answered([&] {
-    return job_view(foreman, foreman.uploaded(upload.printer, upload.file, upload.name));
-  });
+std::string answer_upload(Foreman& foreman, const UploadedJob& upload) {
+  return answered([&] { return job_view(foreman, foreman.uploaded(upload)); });
 }
 
 }  // namespace packmerger

@@ -16,6 +16,6 @@ namespace packmerger {
 std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request);
 
 // The same for a file that came over the web: the job that it became.
-std::string answer_upload(Foreman& foreman, const WebUpload& upload);
+std::string answer_upload(Foreman& foreman, const UploadedJob& upload);
 
 }  // namespace packmerger

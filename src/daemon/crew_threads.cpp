@@ -26,6 +26,7 @@ CrewThreads::CrewThreads(const std::vector<PrinterConfig>& printers, Crew& crew,
                          Queue<Event>& events)
     : crew_(crew), events_(events) {
   others_.push_back(started([&] { run_worker(crew.worker, events); }));
+  others_.push_back(started([&] { run_worker(crew.checker, events); }));
   others_.push_back(started([&] { run_clerk(crew.clerk, events); }));
   others_.push_back(started([&] { tell_devices(stop_, events); }));
   for (const PrinterConfig& printer : printers) start_sender(printer);
@@ -59,6 +60,7 @@ void CrewThreads::end_sender(const std::string& printer) {
 void CrewThreads::finish(const std::function<void()>& meanwhile) {
   stop_ = true;
   crew_.worker.close();
+  crew_.checker.close();
   crew_.clerk.close();
   for (auto& [name, orders] : crew_.senders) orders.close();
   while (running_ > 0) {

@@ -17,26 +17,6 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, ignored);
 }
 
-std::vector<std::string> prepare_command(const DaemonConfig& config, const PrinterConfig& printer,
-                                         const JobRecord& job) {
-  std::vector<std::string> argv = {config.prepare.program.string(),
-                                   "prepare",
-                                   job.input,
-                                   "--profile",
-                                   printer.profile,
-                                   "--out",
-                                   job.folder,
-                                   "--json",
-                                   "--seed",
-                                   std::to_string(config.prepare.seed)};
-  if (config.prepare.budget_s) {
-    argv.push_back("--budget");
-    argv.push_back(std::to_string(*config.prepare.budget_s));
-  }
-  argv.insert(argv.end(), printer.prepare_options.begin(), printer.prepare_options.end());
-  return argv;
-}
-
 // A folder's name for people: the model's name and the job's number.
 std::string handoff_name(const JobRecord& job) {
   std::string stem = fs::path(printable(job.name)).stem().string();
@@ -217,31 +197,6 @@ void Foreman::step(const JobRecord& job) {
   }
 }
 
-void Foreman::start_preparing(JobRecord job) {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  if (preparing_ != 0 || printer == nullptr) return;
-  ++job.attempt;
-  const std::string name = job.attempt == 1 ? "job" : "job-" + std::to_string(job.attempt);
-  job.folder = (job_path(job.id) / name).string();
-  job.state = JobState::kPreparing;
-  store_.save(job, job.attempt == 1 ? "" : "attempt " + std::to_string(job.attempt));
-  preparing_ = job.id;
-  LiveJob& live = live_[job.id];
-  live.cancel_prepare = std::make_shared<std::atomic<bool>>(false);
-  crew_.worker.push({job.id, job.input, job.folder, prepare_command(config_, *printer, job),
-                     config_.prepare, live.cancel_prepare});
-  say(job, "preparing");
-}
-
-void Foreman::approve_by_itself(JobRecord job) {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  if (printer == nullptr || printer->approve != Approve::kAuto || !job.pays || job.held) return;
-  job.state = JobState::kApproved;
-  job.reason.clear();
-  store_.save(job, "approved by itself: it is the cheapest way");
-  start_sending(job);
-}
-
 void Foreman::start_sending(JobRecord job) {
   const PrinterConfig* printer = config_.printer(job.printer);
   if (printer == nullptr || waits_for(*this, job) != Waits::kNothing) return;
@@ -269,7 +224,7 @@ void Foreman::start_sending(JobRecord job) {
 // The place is recorded before the file is moved there, so that an interrupted move is finished.
 void Foreman::file_away(JobRecord job) {
   LiveJob& live = live_[job.id];
-  if (live.with_clerk || preparing_ == job.id || now_s_ < live.retry_s) return;
+  if (live.with_clerk || preparing_.contains(job.id) || now_s_ < live.retry_s) return;
   const bool good = job.state == JobState::kDone || job.state == JobState::kHandedOver;
   if (job.filed.empty() || (is_there(job.input) && is_there(job.filed))) {
     const fs::path base = fs::path(job.origin).parent_path();

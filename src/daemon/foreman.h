@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,11 @@ namespace packmerger {
 // Unix time.
 double wall_clock_s();
 
-// The queues through which the threads of worker.h get their orders.
+// The queues through which the threads of worker.h get their orders. Programs have a worker of
+// their own: they are checked in seconds, and do not wait behind an hour of packing.
 struct Crew {
   Queue<PrepareOrder> worker;
+  Queue<PrepareOrder> checker;
   Queue<ClerkOrder> clerk;
   std::map<std::string, Queue<SendOrder>> senders;  // by printer
 
@@ -57,11 +60,12 @@ class Foreman {
   // the state folder. False when it cannot be taken now; it then stays where it is.
   bool arrived(const PrinterConfig& printer, const std::filesystem::path& file);
 
-  // The same for a file elsewhere in the state folder, as if a file of that name had been put into
-  // the printer's folder. Throws Error{kNoInput} for a printer that is not there, Error{kBusy}
-  // where it cannot be taken now.
-  JobRecord uploaded(const std::string& printer, const std::filesystem::path& file,
-                     const std::string& name);
+  // The one door for files that do not lie in a watched folder: takes upload.file, which is
+  // elsewhere in the state folder, as if it had been put into the printer's folder under its name.
+  // Throws Error{kNoInput} for a printer that is not there, Error{kBadInput} for a name that
+  // job_file_name() refuses or a program that the printer cannot be sent (the file is then left
+  // where it is), Error{kBusy} where it cannot be taken now.
+  JobRecord uploaded(const UploadedJob& upload);
 
   // Throws Error when the database cannot be written; the event then has to be given again.
   void handle(const Event& event);
@@ -90,7 +94,8 @@ class Foreman {
   const DaemonConfig& config() const { return config_; }
   const JobStore& store() const { return store_; }
   const LiveJob* live(std::int64_t id) const;
-  std::int64_t preparing() const { return preparing_; }  // the job with the worker; 0: none
+  // The jobs with the workers.
+  const std::set<std::int64_t>& preparing() const { return preparing_; }
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
   // Whether the printer is there, as far as that is told without disturbing it: of one behind a
@@ -138,6 +143,7 @@ class Foreman {
   bool is_refused(const std::filesystem::path& file);
   void drop_idle_live_jobs(const std::vector<JobRecord>& open);
   void step(const JobRecord& job);
+  bool is_worker_free(const JobRecord& job) const;
   void start_preparing(JobRecord job);
   void approve_by_itself(JobRecord job);
   void start_sending(JobRecord job);
@@ -148,7 +154,7 @@ class Foreman {
   Crew& crew_;
   Log log_;
   std::map<std::int64_t, LiveJob> live_;
-  std::int64_t preparing_ = 0;                       // the job with the worker
+  std::set<std::int64_t> preparing_;                 // the jobs with the workers, one each
   std::map<std::string, std::int64_t> sending_;      // the job with each printer's sender
   std::map<std::filesystem::path, double> refused_;  // files that could not be copied; until when
   std::optional<Devices> devices_;                   // as last told

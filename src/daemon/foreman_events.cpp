@@ -17,7 +17,7 @@ void Foreman::handle(const Event& event) {
 }
 
 void Foreman::on(const PrepareProgress& event) {
-  if (preparing_ != event.job) return;
+  if (!preparing_.contains(event.job)) return;
   live_[event.job].stage = event.stage;
   live_[event.job].fraction = event.fraction;
 }
@@ -41,13 +41,14 @@ void Foreman::on(const Prepared& event) {
     job->state = JobState::kReady;
     job->trays = event.trays;
     job->estimates = event.estimates;
-    job->pays = event.pays;
-    job->reason = event.pays ? "" : "packing does not pay";
+    job->variant = event.variant;
+    job->pays = event.doubt.empty();
+    job->reason = event.doubt;
     store_.save(*job, job->reason);
     say(*job, "ready");
   }
   live_[event.job].cancel_prepare.reset();
-  preparing_ = 0;
+  preparing_.erase(event.job);
 }
 
 void Foreman::on(const PrepareFailed& event) {
@@ -56,7 +57,7 @@ void Foreman::on(const PrepareFailed& event) {
   if (job && job->state == JobState::kPreparing && !stopped)
     end(*job, JobState::kFailed, sentence(event.failure), event.failure.hint);
   live_[event.job].cancel_prepare.reset();
-  preparing_ = 0;
+  preparing_.erase(event.job);
 }
 
 void Foreman::on(const Fetched& event) {

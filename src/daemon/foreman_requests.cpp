@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "daemon/foreman.h"
+#include "daemon/job_file.h"
 #include "daemon/move_file.h"
 
 namespace packmerger {
@@ -28,12 +29,15 @@ const PrinterConfig& Foreman::get_printer(const std::string& name) const {
               "packmerger printers list shows them.");
 }
 
-JobRecord Foreman::uploaded(const std::string& printer, const fs::path& file,
-                            const std::string& name) {
-  const PrinterConfig& chosen = get_printer(printer);
+JobRecord Foreman::uploaded(const UploadedJob& upload) {
+  const PrinterConfig& chosen = get_printer(upload.printer);
+  const std::string name = job_file_name(upload.name);
+  if (is_program(name)) check_program_kind(chosen.abilities, kind_of_file(name));
   if (stopping_) throw Error(Fault::kBusy, "The daemon is ending", "Try again in a moment.");
-  const JobRecord job = begun(chosen, chosen.folder / name);
-  claim(job, file);
+  JobRecord job = begun(chosen, chosen.folder / name);
+  job.at_once = upload.at_once;
+  if (job.at_once) store_.save(job, "to be printed as soon as it is ready");
+  claim(job, upload.file);
   if (const std::optional<JobRecord> taken = store_.find(job.id)) return *taken;
   throw Error(Fault::kBusy, "The file cannot be taken now", "Look into the daemon's messages.");
 }
@@ -109,6 +113,7 @@ JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
   job.folder = old.folder;
   job.trays = old.trays;
   job.estimates = old.estimates;
+  job.variant = old.variant;
   job.pays = old.pays;
   job = store_.add(job);
   job.state = JobState::kApproved;

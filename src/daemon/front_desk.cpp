@@ -62,7 +62,7 @@ void FrontDesk::answer_questions() {
     if (const auto* request = std::get_if<std::string>(&ask))
       (*question)->answer.set_value(answer(foreman_, keys_, *request));
     else
-      (*question)->answer.set_value(answer_upload(foreman_, std::get<WebUpload>(ask)));
+      (*question)->answer.set_value(answer_upload(foreman_, std::get<UploadedJob>(ask)));
   }
 }
 

@@ -55,6 +55,9 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.title = fs::path(input.at("file").get<std::string>()).stem().string();
     job.input_sha256 = input.at("sha256").get<std::string>();
     job.variant = report.value("variant", "packed");
+    for (const json& warning : report.value("warnings", json::array())) {
+      if (job.warning.empty()) job.warning = warning.at("text").get<std::string>();
+    }
     job.estimates = report.at("estimates").dump(-1, ' ', false, json::error_handler_t::replace);
     return job;
   } catch (const json::exception& error) {
@@ -78,6 +81,11 @@ bool packing_pays(const PreparedJob& job) {
     if (other && *other <= *packed) return false;
   }
   return true;
+}
+
+std::string doubt_about(const PreparedJob& job) {
+  if (job.variant == kProgramVariant) return job.warning;
+  return packing_pays(job) ? "" : "packing does not pay";
 }
 
 fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,

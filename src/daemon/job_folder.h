@@ -2,18 +2,23 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "base/files.h"
 #include "model/printer.h"
 
 namespace packmerger {
 
+// The variant of a job that is somebody else's program, printed as it is.
+inline constexpr std::string_view kProgramVariant = "program";
+
 struct PreparedJob {
   int trays = 1;
   std::string title;         // the first input's name without its ending
   std::string input_sha256;  // of the first input
-  std::string variant;       // what was prepared: packed, hollow or solid
+  std::string variant;       // what was prepared: packed, hollow, solid or program
   std::string estimates;     // job.json's "estimates", JSON text
+  std::string warning;       // the first one's text; empty: none
 };
 
 // Throws Error{kNoInput} when folder is no job folder, Error{kBadInput} when its job.json is not
@@ -26,6 +31,10 @@ Profile read_prepared_profile(const fs::path& folder);
 // True when the job was packed and costs less so than every other way that fits the printer, or
 // when nothing else fits.
 bool packing_pays(const PreparedJob& job);
+
+// Why somebody should look at the job before it is printed: a model whose packing does not pay, a
+// program with a warning. Empty: nothing speaks against printing it.
+std::string doubt_about(const PreparedJob& job);
 
 // "program.gcode", "program-2.x3g", "tray-2.stl": a tray's file in the job folder.
 fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,

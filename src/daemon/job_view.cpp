@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/duration.h"
+#include "daemon/job_file.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
 
@@ -87,12 +88,13 @@ json heaters_view(const PrintReport& print) {
   return heaters;
 }
 
-json print_view(const LiveJob* live) {
+json print_view(const LiveJob* live, std::string_view unit) {
   if (live == nullptr || !live->control) return nullptr;
   return {{"stage", print_state_name(live->print.state)},
           {"fraction", fraction_of(live->print)},
           {"done", live->print.done},
           {"total", live->print.total},
+          {"unit", unit},
           {"text", live->print.text},
           {"choices", live->print.choices},
           {"heaters", heaters_view(live->print)},
@@ -100,11 +102,16 @@ json print_view(const LiveJob* live) {
           {"remaining_s", live->print.remaining_s ? json(*live->print.remaining_s) : json()}};
 }
 
-json progress_view(const JobRecord& job, const LiveJob* live) {
+// What its progress is counted in.
+std::string_view unit_of(const PrinterConfig* printer) {
+  return printer != nullptr && printer->abilities.dialect == Dialect::kGcode ? "line" : "byte";
+}
+
+json progress_view(const JobRecord& job, const LiveJob* live, std::string_view unit) {
   if (live == nullptr) return nullptr;
   if (job.state == JobState::kPreparing)
     return {{"stage", live->stage}, {"fraction", live->fraction}};
-  return job.state == JobState::kSending ? print_view(live) : json();
+  return job.state == JobState::kSending ? print_view(live, unit) : json();
 }
 
 json estimates_view(const JobRecord& job) {
@@ -113,6 +120,12 @@ json estimates_view(const JobRecord& job) {
 }
 
 json or_null(double value) { return value == 0 ? json() : json(value); }
+
+json or_null(std::int64_t id) { return id == 0 ? json() : json(id); }
+
+std::string_view kind_name(const JobRecord& job) {
+  return is_program(job.name) ? "program" : "model";
+}
 
 }  // namespace
 
@@ -160,14 +173,18 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"id", job.id},
       {"printer", job.printer},
       {"name", job.name},
+      {"kind", kind_name(job)},
       {"sha256", job.sha256},
+      {"same_as", or_null(foreman.store().same_bytes_before(job))},
       {"state", state_name(job.state)},
       {"held", job.held},
       {"waits_for", waits.empty() ? json() : json(waits)},
       {"status", status_text(foreman, job)},
-      {"progress", progress_view(job, foreman.live(job.id))},
+      {"progress",
+       progress_view(job, foreman.live(job.id), unit_of(foreman.config().printer(job.printer)))},
       {"trays", job.trays},
       {"tray", job.next_tray},
+      {"variant", job.variant},
       {"pays", job.pays},
       {"estimates", estimates_view(job)},
       {"reason", job.reason},
@@ -175,7 +192,7 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"told", job.told_total == 0 ? json() : json{{"done", job.told}, {"total", job.told_total}}},
       {"folder", job.trays > 0 ? job.folder : ""},
       {"filed", job.filing_done ? job.filed : ""},
-      {"again_of", job.again_of == 0 ? json() : json(job.again_of)},
+      {"again_of", or_null(job.again_of)},
       {"received_s", or_null(job.received_s)},
       {"sending_s", or_null(job.sending_s)},
       {"ended_s", or_null(job.ended_s)}};
@@ -207,7 +224,7 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"bed", bed},
           {"paused", record.paused},
           {"job", sending == 0 ? json() : json(sending)},
-          {"print", print_view(foreman.live(sending))}};
+          {"print", print_view(foreman.live(sending), unit_of(&printer))}};
 }
 
 std::string daemon_status(const Foreman& foreman) {
@@ -215,7 +232,7 @@ std::string daemon_status(const Foreman& foreman) {
   std::string text = printers.empty() ? "no printer is configured"
                                       : fmt::format("{} printer{}", printers.size(),
                                                     printers.size() > 1 ? "s" : "");
-  if (foreman.preparing() != 0) text += fmt::format("; preparing job {}", foreman.preparing());
+  for (const std::int64_t job : foreman.preparing()) text += fmt::format("; preparing job {}", job);
   for (const PrinterConfig& printer : printers)
     if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
       text += fmt::format("; job {} is at {}", job, printer.name);

@@ -25,7 +25,7 @@ struct Failure {
   std::string hint;
 };
 
-// To the worker, which prepares one job after the other.
+// To a worker, which prepares one job after the other.
 struct PrepareOrder {
   std::int64_t job = 0;
   std::filesystem::path input;
@@ -61,6 +61,15 @@ struct SendOrder {
   std::shared_ptr<PrintControl> control;
 };
 
+// A file that came through a door (the page, a program, a slicer) and lies in the state folder;
+// whoever takes it moves it away.
+struct UploadedJob {
+  std::string printer;
+  std::string name;  // as its sender calls it; job_file_name() makes a name of it
+  std::filesystem::path file;
+  bool at_once = false;  // print it as soon as it is ready: its sender approves it
+};
+
 // To the loop.
 struct PrepareProgress {
   std::int64_t job = 0;
@@ -75,7 +84,8 @@ struct Prepared {
   std::int64_t job = 0;
   int trays = 0;
   std::string estimates;  // JSON text
-  bool pays = false;
+  std::string variant;    // what was prepared: packed, hollow, solid or program
+  std::string doubt;      // why somebody should look at it before it is printed; empty: nothing
 };
 struct PrepareFailed {
   std::int64_t job = 0;

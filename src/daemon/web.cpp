@@ -1,6 +1,5 @@
 #include "daemon/web.h"
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <chrono>
@@ -8,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "daemon/job_file.h"
 #include "daemon/web_routes.h"
 
 namespace packmerger {
@@ -17,7 +17,6 @@ using nlohmann::json;
 
 constexpr std::size_t kMostBody = 4096;  // of a request that is no upload
 constexpr std::chrono::seconds kPatience(20);
-constexpr std::array<std::string_view, 5> kModels = {".stl", ".obj", ".ply", ".off", ".3mf"};
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -81,25 +80,6 @@ HttpReply no_such_route(const WebRoute& route) {
                               "Use " + route.allowed + "; docs/API.md lists the routes.");
   reply.headers.emplace_back("Allow", route.allowed);
   return reply;
-}
-
-bool is_model_name(const std::string& name) {
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::any_of(kModels.begin(), kModels.end(),
-                     [&](std::string_view ending) { return lower.ends_with(ending); });
-}
-
-// The last part of what the client calls the file, as a name in a folder.
-std::string safe_name(const std::string& given) {
-  std::string name = given.substr(given.find_last_of("/\\") + 1);
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
-  name.erase(0, std::min(name.find_first_not_of(". ~"), name.size()));
-  constexpr std::size_t kLongest = 200;
-  if (name.size() > kLongest) name.erase(0, name.size() - kLongest);
-  return name;
 }
 
 }  // namespace
@@ -172,7 +152,7 @@ HttpReply Web::routed(HttpRequest& request) {
   return no_such_route(route);
 }
 
-HttpReply Web::ask(std::variant<std::string, WebUpload> question) {
+HttpReply Web::ask(std::variant<std::string, UploadedJob> question) {
   const auto asked = std::make_shared<WebQuestion>();
   asked->ask = std::move(question);
   std::future<std::string> answer = asked->answer.get_future();
@@ -187,11 +167,12 @@ HttpReply Web::upload(HttpRequest& request) {
     return web_error(422, Fault::kUsage, "The form needs one file and the field printer",
                      "curl -F printer=NAME -F file=@model.stl does it.");
   const UploadedFile& file = request.files.front();
-  const std::string name = safe_name(file.name);
-  if (!is_model_name(name))
-    return web_error(415, Fault::kBadInput, "This is no model that PackMerger reads",
-                     "Send an STL, OBJ, PLY, OFF or 3MF file.");
-  HttpReply reply = ask(WebUpload{printer->second, name, file.path});
+  if (kind_of_file(file.name) == FileKind::kUnknown)
+    return web_error(415, Fault::kBadInput, "This is nothing that PackMerger takes",
+                     "Send a model (STL, OBJ, PLY, OFF, 3MF) or a program (G-code, x3g).");
+  const auto at_once = request.form.find("print");
+  HttpReply reply = ask(UploadedJob{printer->second, file.name, file.path,
+                                    at_once != request.form.end() && at_once->second == "true"});
   if (reply.status == 200) reply.status = 201;
   return reply;
 }

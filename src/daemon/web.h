@@ -11,22 +11,16 @@
 #include "base/queue.h"
 #include "daemon/config.h"
 #include "daemon/key_ring.h"
+#include "daemon/messages.h"
 #include "daemon/web_events.h"
 #include "daemon/web_guard.h"
 #include "http/server.h"
 
 namespace packmerger {
 
-// A file that came over the web and lies in the state folder; whoever takes it moves it away.
-struct WebUpload {
-  std::string printer;
-  std::string name;  // for people, and to tell the format
-  std::filesystem::path file;
-};
-
 // To the loop, which answers as it answers the local socket (api.h).
 struct WebQuestion {
-  std::variant<std::string, WebUpload> ask;  // a request as JSON text
+  std::variant<std::string, UploadedJob> ask;  // a request as JSON text
   std::promise<std::string> answer;
 };
 using WebQuestions = Queue<std::shared_ptr<WebQuestion>>;
@@ -48,7 +42,7 @@ class Web {
   BodyPlan plan(const HttpRequest& request);
   HttpReply answer(HttpRequest& request);
   HttpReply routed(HttpRequest& request);
-  HttpReply ask(std::variant<std::string, WebUpload> question);
+  HttpReply ask(std::variant<std::string, UploadedJob> question);
   HttpReply upload(HttpRequest& request);
   HttpReply file_of_job(const std::string& id, const std::string& name);
   HttpReply events();

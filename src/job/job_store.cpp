@@ -20,7 +20,7 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::int64_t kSchema = 2;
+constexpr std::int64_t kSchema = 3;
 
 constexpr const char* kMakeTables = R"(
 CREATE TABLE job (
@@ -48,11 +48,26 @@ ALTER TABLE job ADD COLUMN told INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE job ADD COLUMN told_total INTEGER NOT NULL DEFAULT 0;
 PRAGMA user_version = 2;
 )";
+
+constexpr const char* kAddPrograms = R"(
+ALTER TABLE job ADD COLUMN variant TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN at_once INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 3;
+)";
+
 constexpr std::string_view kColumns =
     "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
     "next_tray, pays, "
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
-    "told, told_total";
+    "told, told_total, variant, at_once";
+
+// As many as there are columns.
+std::string placeholders() {
+  std::string text = "?";
+  for (const char c : kColumns)
+    if (c == ',') text += ",?";
+  return text;
+}
 
 std::string select(std::string_view condition) {
   return "SELECT id, " + std::string(kColumns) + " FROM job " + std::string(condition);
@@ -71,7 +86,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(flag(job.pays)).bind(job.estimates).bind(job.reason).bind(job.hint);
   statement.bind(job.filed).bind(flag(job.filing_done)).bind(job.again_of);
   statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
-  statement.bind(job.told).bind(job.told_total);
+  statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
 }
 
 JobState read_state(Statement& row) {
@@ -108,6 +123,8 @@ JobRecord read_job(Statement& row) {
   job.ended_s = row.real();
   job.told = row.integer();
   job.told_total = row.integer();
+  job.variant = row.text();
+  job.at_once = row.flag();
   return job;
 }
 
@@ -151,6 +168,7 @@ JobStore::JobStore(const std::filesystem::path& file)
                 "Install that version again, or name another state folder.");
   if (found < 1) connection.run(kMakeTables);
   if (found < 2) connection.run(kAddTold);
+  if (found < 3) connection.run(kAddPrograms);
   transaction.commit();
 }
 
@@ -161,8 +179,8 @@ JobRecord JobStore::add(JobRecord job) {
   if (!may_begin(job.state)) forbidden(job, "nothing");
   Connection& connection = database_->connection;
   Transaction transaction(connection);
-  Statement statement(connection, "INSERT INTO job (" + std::string(kColumns) +
-                                      ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  Statement statement(connection, "INSERT INTO job (" + std::string(kColumns) + ") VALUES (" +
+                                      placeholders() + ")");
   bind_job(statement, job);
   statement.finish();
   job.id = sqlite3_last_insert_rowid(connection.get());
@@ -179,9 +197,8 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
   const bool stays_ended = before && before->state == job.state && has_ended(job.state);
   if (!before || (!stays_ended && !may_follow(before->state, job.state)))
     forbidden(job, before ? state_name(before->state) : "nothing");
-  Statement statement(connection,
-                      "UPDATE job SET (" + std::string(kColumns) +
-                          ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
+  Statement statement(connection, "UPDATE job SET (" + std::string(kColumns) + ") = (" +
+                                      placeholders() + ") WHERE id = ?");
   bind_job(statement, job);
   statement.bind(job.id).finish();
   const bool is_told = before->state != job.state || !note.empty();
@@ -221,6 +238,14 @@ std::vector<JobRecord> JobStore::newest(int limit) const {
 std::int64_t JobStore::same_bytes(const JobRecord& job) const {
   Statement row(database_->connection,
                 "SELECT id FROM job WHERE sha256 = ? AND sha256 <> '' AND id <> ? "
+                "ORDER BY id DESC LIMIT 1");
+  row.bind(job.sha256).bind(job.id);
+  return row.step() ? row.integer() : 0;
+}
+
+std::int64_t JobStore::same_bytes_before(const JobRecord& job) const {
+  Statement row(database_->connection,
+                "SELECT id FROM job WHERE sha256 = ? AND sha256 <> '' AND id < ? "
                 "ORDER BY id DESC LIMIT 1");
   row.bind(job.sha256).bind(job.id);
   return row.step() ? row.integer() : 0;

@@ -34,7 +34,9 @@ struct JobRecord {
   std::string folder;         // the prepared job folder; empty until preparing began
   int trays = 0;              // 0 until prepared
   int next_tray = 1;          // the tray that is sent now or next, from 1
-  bool pays = false;          // what was prepared is cheaper than every other way that fits
+  std::string variant;        // what was prepared: packed, hollow, solid, or program: as it came
+  bool pays = false;          // nothing speaks against printing what was prepared
+  bool at_once = false;       // whoever sent it asked for it to be printed as soon as it is ready
   std::string estimates;      // job.json's "estimates", JSON text; empty until prepared
   std::string reason;         // why it failed, was cancelled or asks; one sentence
   std::string hint;           // what to do next; may be empty
@@ -91,6 +93,8 @@ class JobStore {
   std::vector<JobRecord> newest(int limit) const;
   // The newest other job with the same bytes for any printer; 0: none.
   std::int64_t same_bytes(const JobRecord& job) const;
+  // The newest such job that came before this one; 0: none.
+  std::int64_t same_bytes_before(const JobRecord& job) const;
   std::vector<JobEvent> history(std::int64_t id) const;
 
   // A printer never seen before: its bed is not clear, and it is not paused.

@@ -3,10 +3,21 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace packmerger {
 
-enum class EstimateSource { kModel, kSlicer };
+enum class EstimateSource {
+  kModel,    // the profile's model of the machine
+  kSlicer,   // sliced for it
+  kProgram,  // what a ready program says of itself in its comments
+  kMoves     // counted from a ready program's moves, lengths over speeds
+};
+
+// "model", "slicer", "program", "moves", as job.json has them. The inverse takes anything it does
+// not know for kModel.
+std::string_view source_name(EstimateSource source);
+EstimateSource source_named(std::string_view name);
 
 struct Estimate {
   double time_s = 0;

@@ -31,7 +31,7 @@ Json estimate_json(const std::optional<Estimate>& estimate) {
           {"parts", estimate->parts},
           {"trays", estimate->trays},
           {"assembly_min", estimate->assembly_min},
-          {"source", estimate->source == EstimateSource::kSlicer ? "slicer" : "model"}};
+          {"source", source_name(estimate->source)}};
 }
 
 std::optional<Estimate> estimate_of(const Json& json) {
@@ -47,8 +47,7 @@ std::optional<Estimate> estimate_of(const Json& json) {
   estimate.parts = json.at("parts");
   estimate.trays = json.at("trays");
   estimate.assembly_min = json.at("assembly_min");
-  estimate.source =
-      json.at("source") == "slicer" ? EstimateSource::kSlicer : EstimateSource::kModel;
+  estimate.source = source_named(json.at("source").get<std::string>());
   return estimate;
 }
 
@@ -113,15 +112,6 @@ Json removal_paths_json(const std::map<int, std::vector<Vec3>>& paths) {
   return all;
 }
 
-Json printer_json(const Profile& profile) {
-  const Json settings = settings_json(profile);
-  return {{"name", profile.name},
-          {"technology", settings["technology"]},
-          {"dialect", settings["dialect"]},
-          {"build_mm", profile.build_mm},
-          {"support_angle_deg", profile.support_angle_deg}};
-}
-
 Json packing_json(const Job& job) {
   return {{"weight", job.profile.pack.weight},  {"cost", job.cost},
           {"bbox_mm3", job.bbox_mm3},           {"support_mm3", job.support_mm3},
@@ -130,6 +120,15 @@ Json packing_json(const Job& job) {
 }
 
 }  // namespace
+
+Json printer_json(const Profile& profile) {
+  const Json settings = settings_json(profile);
+  return {{"name", profile.name},
+          {"technology", settings["technology"]},
+          {"dialect", settings["dialect"]},
+          {"build_mm", profile.build_mm},
+          {"support_angle_deg", profile.support_angle_deg}};
+}
 
 Json comparison_json(const Comparison& comparison) {
   return {{"as_is", estimate_json(comparison.as_is)},

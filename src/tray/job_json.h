@@ -16,6 +16,9 @@ nlohmann::json comparison_json(const Comparison& comparison);
 // The inverse of comparison_json(). Throws nlohmann::json::exception where a key is missing.
 Comparison comparison_of(const nlohmann::json& json);
 
+// {"name", "technology", "dialect", "build_mm", "support_angle_deg"}.
+nlohmann::json printer_json(const Profile& profile);
+
 // The whole report. Number arrays and keys are those of docs/JOB_FOLDER. Bytes that are not UTF-8
 // in a file's name are replaced when it is dumped with json_text().
 nlohmann::json job_json(const Job& job);

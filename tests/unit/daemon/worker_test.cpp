@@ -87,7 +87,7 @@ TEST_F(WorkerTest, PreparesAndTellsWhatIsThere) {
   const Prepared prepared = std::get<Prepared>(end_of(order("slow-two.stl")));
   EXPECT_EQ(prepared.job, 5);
   EXPECT_EQ(prepared.trays, 2);
-  EXPECT_TRUE(prepared.pays);
+  EXPECT_TRUE(prepared.doubt.empty());
   int progress = 0;
   bool hashed = false;
   for (const Event& event : before_) {

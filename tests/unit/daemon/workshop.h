@@ -83,6 +83,7 @@ class Workshop {
   }
 
   std::optional<PrepareOrder> prepare_order() { return crew_->worker.try_pop(); }
+  std::optional<PrepareOrder> check_order() { return crew_->checker.try_pop(); }
   std::optional<SendOrder> send_order(const std::string& name) {
     return crew_->senders.at(name).try_pop();
   }
@@ -90,7 +91,8 @@ class Workshop {
   void prepare(const PrepareOrder& order, int trays = 1, bool pays = true) {
     fs::create_directories(order.out);
     std::ofstream(order.out / "job.json") << "{}";
-    tell(Prepared{order.job, trays, R"({"packed":{"fits":true,"cost":1}})", pays});
+    tell(Prepared{order.job, trays, R"({"packed":{"fits":true,"cost":1}})", "packed",
+                  pays ? "" : "packing does not pay"});
   }
 
   // The clerk's work, really done.

@@ -75,6 +75,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.sending_s = 2.5;
     job.told = 120;
     job.told_total = 300;
+    job.variant = "program";
+    job.at_once = true;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -91,6 +93,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.sending_s, 2.5);
   EXPECT_EQ(back.told, 120);
   EXPECT_EQ(back.told_total, 300);
+  EXPECT_EQ(back.variant, "program");
+  EXPECT_TRUE(back.at_once);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
@@ -105,6 +109,7 @@ TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
   ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(raw,
                          "ALTER TABLE job DROP COLUMN told; ALTER TABLE job DROP COLUMN told_total;"
+                         "ALTER TABLE job DROP COLUMN variant; ALTER TABLE job DROP COLUMN at_once;"
                          "PRAGMA user_version = 1",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
