@@ -4,28 +4,47 @@
 #include <cstring>
 #include <functional>
 
+#include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/worker.h"
 
 namespace packmerger {
 namespace {
 
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::symlink_status(path, ignored));
+}
+
+void fetch_settings(const FetchOrder& order) {
+  const fs::path from = settings_beside(order.from);
+  const fs::path to = settings_beside(order.to);
+  if (order.with_settings && is_there(from) && !is_there(to)) copy_file_whole(from, to);
+}
+
 // A copy whose original cannot be removed is taken back: the file would be found again.
 void fetch(const FetchOrder& order) {
+  fetch_settings(order);
   copy_file_whole(order.from, order.to);
   if (order.keep) return;
   if (::unlink(order.from.c_str()) == 0) {
+    if (order.with_settings) ::unlink(settings_beside(order.from).c_str());
     sync_folder(order.from.parent_path());
     return;
   }
   const std::string why = std::strerror(errno);
   ::unlink(order.to.c_str());
+  ::unlink(settings_beside(order.to).c_str());
   throw Error(Fault::kCannotWrite, "Cannot take " + printable(order.from.string()) + ": " + why,
               "Give the daemon's user the right to write to the watched folder.");
 }
 
 void file(const FileOrder& order) {
+  const fs::path settings = settings_beside(order.from);
+  if (order.with_settings && is_there(settings)) move_new(settings, settings_beside(order.to));
   if (fs::exists(order.from)) move_new(order.from, order.to);
+  const fs::path picture = picture_beside(order.to);
+  if (is_there(order.picture) && !is_there(picture)) copy_file_whole(order.picture, picture);
   write_file_whole(order.note, order.note_text);
 }
 

@@ -1,6 +1,5 @@
 #include "daemon/config.h"
 
-#include <fmt/format.h>
 #include <toml++/toml.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 #include "daemon/config_sections.h"
 #include "daemon/config_table.h"
 #include "daemon/find_port.h"
+#include "daemon/model_options.h"
 
 namespace packmerger {
 namespace {
@@ -33,43 +33,6 @@ bool is_printer_name(std::string_view text) {
   };
   return !text.empty() && text.size() <= 64 && text.front() != '.' &&
          std::all_of(text.begin(), text.end(), fits);
-}
-
-// What packmerger prepare is told beside the model, the profile and where to write.
-void read_prepare_options(TableReader& reader, PrinterConfig& printer) {
-  std::vector<std::string>& options = printer.prepare_options;
-  const auto add = [&](const std::string& option, const std::string& value) {
-    options.insert(options.end(), {option, value});
-  };
-  reader.text("units", "one of mm, cm, m, in", [&](const std::string& text) {
-    add("--units", text);
-    return text == "mm" || text == "cm" || text == "m" || text == "in";
-  });
-  reader.number("size_mm", 0.001, 1e6, "a number above 0 to 1000000 (mm)",
-                [&](double value) { add("--size", fmt::format("{}", value)); });
-  reader.number("scale", 1e-6, 1e6, "a number from 0.000001 to 1000000",
-                [&](double value) { add("--scale", fmt::format("{}", value)); });
-  reader.text("variant", "one of packed, hollow, solid, cheapest", [&](const std::string& text) {
-    add("--variant", text);
-    return text == "packed" || text == "hollow" || text == "solid" || text == "cheapest";
-  });
-  reader.flag("split", [&](bool value) {
-    if (!value) options.push_back("--no-split");
-  });
-  reader.flag("hollow", [&](bool value) {
-    if (!value) options.push_back("--no-hollow");
-  });
-  reader.key("set", "a list of texts \"key=value\" that the profile takes",
-             [&](const toml::node& node) {
-               const toml::array* list = node.as_array();
-               if (list == nullptr) return false;
-               for (const toml::node& item : *list) {
-                 const auto text = item.value_exact<std::string>();
-                 if (!text) return false;
-                 add("--set", *text);
-               }
-               return true;
-             });
 }
 
 void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig& printer) {
@@ -97,7 +60,7 @@ void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig&
     return text == "auto" || text == "ask";
   });
   reader.flag("simulated", [&](bool value) { printer.simulated = value; });
-  read_prepare_options(reader, printer);
+  read_printer_options(reader, printer.options);
   reader.done();
 }
 
@@ -107,18 +70,13 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   if (printer.profile.empty()) refuse(file, line, table + " needs the key profile");
   try {
     printer.abilities = read_profile(printer.profile);
-    for (std::size_t i = 0; i + 1 < printer.prepare_options.size(); ++i)
-      if (printer.prepare_options[i] == "--set")
-        set_profile_key(printer.abilities, printer.prepare_options[i + 1]);
+    for (const std::string& assignment : printer.options.set)
+      set_profile_key(printer.abilities, assignment);
     check_settings(printer.abilities);
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what());
   }
-  const auto has = [&](const char* option) {
-    const std::vector<std::string>& options = printer.prepare_options;
-    return std::find(options.begin(), options.end(), option) != options.end();
-  };
-  if (has("--size") && has("--scale"))
+  if (printer.options.size_mm && printer.options.scale)
     refuse(file, line, table + " cannot have both size_mm and scale");
   if (printer.hands_over() && printer.handoff_folder.empty())
     refuse(file, line, table + " needs the key handoff_folder: this printer takes no job by wire");

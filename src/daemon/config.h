@@ -44,6 +44,22 @@ struct WebConfig {
   bool operator==(const WebConfig&) const = default;
 };
 
+// How models are prepared: the options of packmerger prepare. What is not there is left to it.
+struct ModelOptions {
+  std::optional<std::string> units;
+  std::optional<double> size_mm;  // not together with scale
+  std::optional<double> scale;
+  std::optional<std::int64_t> copies;
+  std::optional<std::string> variant;
+  std::optional<bool> split;
+  std::optional<bool> hollow;
+  std::optional<std::int64_t> seed;
+  std::optional<double> budget_s;
+  std::vector<std::string> set;  // "key=value" of the profile
+
+  bool operator==(const ModelOptions&) const = default;
+};
+
 struct PrinterConfig {
   std::string name;
   std::string profile;                   // an id, or the absolute path of a TOML file
@@ -52,8 +68,8 @@ struct PrinterConfig {
   std::string port;                      // dialects gcode, s3g and usb
   std::filesystem::path handoff_folder;  // dialect handoff
   Approve approve = Approve::kAsk;
-  bool simulated = false;                    // no bed has to be cleared
-  std::vector<std::string> prepare_options;  // for packmerger prepare: --units, --size, …
+  bool simulated = false;  // no bed has to be cleared
+  ModelOptions options;    // of every model for this printer
 
   bool hands_over() const { return abilities.dialect == Dialect::kHandoff; }
   bool has_bed() const { return !simulated && !hands_over(); }

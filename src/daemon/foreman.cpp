@@ -5,6 +5,7 @@
 #include <set>
 
 #include "daemon/job_view.h"
+#include "daemon/model_options.h"
 #include "daemon/move_file.h"
 
 namespace packmerger {
@@ -15,6 +16,14 @@ constexpr int kMostDoublings = 4;  // of retry_s
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
+}
+
+void remove_if_same(const fs::path& original, const fs::path& copy) {
+  std::error_code failed;
+  if (!is_there(original)) return;
+  const bool same = fs::file_size(original, failed) == fs::file_size(copy, failed) && !failed &&
+                    sha256_hex_of_file(original) == sha256_hex_of_file(copy);
+  if (same) fs::remove(original, failed);
 }
 
 // A folder's name for people: the model's name and the job's number.
@@ -94,14 +103,15 @@ bool Foreman::arrived(const PrinterConfig& printer, const fs::path& file) {
   if (std::any_of(live_.begin(), live_.end(),
                   [&](const auto& item) { return item.second.fetching_from == file; }))
     return true;
-  return claim(begun(printer, file), file);
+  return claim(begun(printer, file, has_settings_beside(file)), file);
 }
 
-JobRecord Foreman::begun(const PrinterConfig& printer, const fs::path& origin) {
+JobRecord Foreman::begun(const PrinterConfig& printer, const fs::path& origin, bool with_settings) {
   JobRecord job;
   job.printer = printer.name;
   job.name = origin.filename().string();
   job.origin = origin.string();
+  job.with_settings = with_settings;
   job.received_s = wall_clock_s();
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
@@ -115,7 +125,7 @@ bool Foreman::claim(JobRecord job, const fs::path& file) {
       job.by_copy = true;
       store_.save(job);
       live_[job.id].fetching_from = file;
-      crew_.clerk.push(FetchOrder{job.id, file, job.input});
+      crew_.clerk.push(FetchOrder{job.id, file, job.input, job.with_settings});
     } else {
       finish_claim(job);
     }
@@ -138,18 +148,34 @@ void Foreman::forget(const JobRecord& job) {
 // What died while claiming: the file is here, whole, or it never left its place.
 void Foreman::finish_claim(JobRecord job) {
   if (job.input.empty() || !is_there(job.input)) return forget(job);
+  if (!take_settings(job)) return;
   remove_copied_original(job);
   job.state = JobState::kReceived;
   store_.save(job);
   say(job, "received");
 }
 
+// The settings file follows its model; one that a copied model came with was copied before it.
+// False where that cannot be done now.
+bool Foreman::take_settings(const JobRecord& job) {
+  if (!job.with_settings || has_settings_beside(job.input) || !has_settings_beside(job.origin))
+    return true;
+  LiveJob& live = live_[job.id];
+  if (now_s_ < live.retry_s) return false;
+  try {
+    rename_new(settings_beside(job.origin), settings_beside(job.input));
+    return true;
+  } catch (const Error& error) {
+    say(job, error.what() + (" " + error.hint()));
+    live.retry_s = retry_at(live.failures++);
+    return false;
+  }
+}
+
 void Foreman::remove_copied_original(const JobRecord& job) const {
-  std::error_code failed;
-  if (!job.by_copy || job.again_of != 0 || !is_there(job.origin)) return;
-  const bool same = fs::file_size(job.origin, failed) == fs::file_size(job.input, failed) &&
-                    !failed && sha256_hex_of_file(job.origin) == sha256_hex_of_file(job.input);
-  if (same) fs::remove(job.origin, failed);
+  if (!job.by_copy || job.again_of != 0) return;
+  remove_if_same(job.origin, job.input);
+  if (job.with_settings) remove_if_same(settings_beside(job.origin), settings_beside(job.input));
 }
 
 void Foreman::advance(double now_s) {
@@ -232,7 +258,8 @@ void Foreman::file_away(JobRecord job) {
     store_.save(job);
   }
   live.with_clerk = true;
-  crew_.clerk.push(FileOrder{job.id, job.input, job.filed,
+  crew_.clerk.push(FileOrder{job.id, job.input, job.filed, job.with_settings,
+                             job.folder.empty() ? fs::path() : job.folder / fs::path("preview.png"),
                              note_beside(job.filed, good ? ".result.json" : ".reason.txt"),
                              good ? result_note(job) : reason_note(job)});
 }

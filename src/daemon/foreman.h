@@ -115,10 +115,12 @@ class Foreman {
   void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
            const std::string& note = {});
 
-  JobRecord begun(const PrinterConfig& printer, const std::filesystem::path& origin);
+  JobRecord begun(const PrinterConfig& printer, const std::filesystem::path& origin,
+                  bool with_settings);
   bool claim(JobRecord job, const std::filesystem::path& file);
   void forget(const JobRecord& job);
   void finish_claim(JobRecord job);
+  bool take_settings(const JobRecord& job);
   void remove_copied_original(const JobRecord& job) const;
 
   void on(const PrepareProgress& event);
@@ -144,6 +146,8 @@ class Foreman {
   void drop_idle_live_jobs(const std::vector<JobRecord>& open);
   void step(const JobRecord& job);
   bool is_worker_free(const JobRecord& job) const;
+  std::vector<std::string> prepare_command(const PrinterConfig& printer,
+                                           const JobRecord& job) const;
   void start_preparing(JobRecord job);
   void approve_by_itself(JobRecord job);
   void start_sending(JobRecord job);

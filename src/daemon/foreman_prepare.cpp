@@ -4,20 +4,20 @@
 #include "daemon/foreman.h"
 #include "daemon/job_file.h"
 #include "daemon/job_folder.h"
+#include "daemon/model_options.h"
+#include "daemon/move_file.h"
 
 namespace packmerger {
 namespace {
 
-// Of a printer's options, those that are about its profile count for a program too.
-void add_profile_settings(const PrinterConfig& printer, std::vector<std::string>& argv) {
-  const std::vector<std::string>& options = printer.prepare_options;
-  for (std::size_t i = 0; i + 1 < options.size(); ++i)
-    if (options[i] == "--set") argv.insert(argv.end(), {options[i], options[i + 1]});
+std::string folder_name(int attempt) {
+  return attempt == 1 ? "job" : "job-" + std::to_string(attempt);
 }
 
-std::vector<std::string> prepare_command(const DaemonConfig& config, const PrinterConfig& printer,
-                                         const JobRecord& job) {
-  std::vector<std::string> argv = {config.prepare.program.string(),
+}  // namespace
+std::vector<std::string> Foreman::prepare_command(const PrinterConfig& printer,
+                                                  const JobRecord& job) const {
+  std::vector<std::string> argv = {config_.prepare.program.string(),
                                    "prepare",
                                    job.input,
                                    "--profile",
@@ -25,20 +25,27 @@ std::vector<std::string> prepare_command(const DaemonConfig& config, const Print
                                    "--out",
                                    job.folder,
                                    "--json"};
+  const auto add = [&](const std::vector<std::string>& arguments) {
+    argv.insert(argv.end(), arguments.begin(), arguments.end());
+  };
   if (is_program(job.name)) {
-    add_profile_settings(printer, argv);
+    if (job.with_settings)
+      throw Error(Fault::kBadInput,
+                  "A program is printed as it is: a settings file beside it changes nothing",
+                  "Remove the settings file, and drop the program again.");
+    add(profile_arguments_of(printer.options));
     return argv;
   }
-  argv.insert(argv.end(), {"--seed", std::to_string(config.prepare.seed)});
-  if (config.prepare.budget_s) {
-    argv.push_back("--budget");
-    argv.push_back(std::to_string(*config.prepare.budget_s));
-  }
-  argv.insert(argv.end(), printer.prepare_options.begin(), printer.prepare_options.end());
+  ModelOptions options;
+  options.seed = config_.prepare.seed;
+  options.budget_s = config_.prepare.budget_s;
+  options = laid_over(options, printer.options);
+  if (job.with_settings)
+    options =
+        laid_over(options, read_model_settings(settings_beside(job.input), printer.abilities));
+  add(arguments_of(options));
   return argv;
 }
-
-}  // namespace
 
 bool Foreman::is_worker_free(const JobRecord& job) const {
   return std::none_of(preparing_.begin(), preparing_.end(), [&](std::int64_t id) {
@@ -50,17 +57,23 @@ bool Foreman::is_worker_free(const JobRecord& job) const {
 void Foreman::start_preparing(JobRecord job) {
   const PrinterConfig* printer = config_.printer(job.printer);
   if (printer == nullptr || !is_worker_free(job)) return;
+  std::vector<std::string> command;
+  try {
+    job.folder = (job_path(job.id) / folder_name(job.attempt + 1)).string();
+    command = prepare_command(*printer, job);
+  } catch (const Error& error) {
+    job.folder.clear();
+    return end(job, JobState::kFailed, printable(error.what()), error.hint());
+  }
   ++job.attempt;
-  const std::string name = job.attempt == 1 ? "job" : "job-" + std::to_string(job.attempt);
-  job.folder = (job_path(job.id) / name).string();
   job.state = JobState::kPreparing;
   store_.save(job, job.attempt == 1 ? "" : "attempt " + std::to_string(job.attempt));
   preparing_.insert(job.id);
   LiveJob& live = live_[job.id];
   live.cancel_prepare = std::make_shared<std::atomic<bool>>(false);
   (is_program(job.name) ? crew_.checker : crew_.worker)
-      .push({job.id, job.input, job.folder, prepare_command(config_, *printer, job),
-             config_.prepare, live.cancel_prepare});
+      .push({job.id, job.input, job.folder, std::move(command), config_.prepare,
+             live.cancel_prepare});
   say(job, "preparing");
 }
 

@@ -3,6 +3,7 @@
 
 #include "daemon/foreman.h"
 #include "daemon/job_file.h"
+#include "daemon/model_options.h"
 #include "daemon/move_file.h"
 
 namespace packmerger {
@@ -34,7 +35,7 @@ JobRecord Foreman::uploaded(const UploadedJob& upload) {
   const std::string name = job_file_name(upload.name);
   if (is_program(name)) check_program_kind(chosen.abilities, kind_of_file(name));
   if (stopping_) throw Error(Fault::kBusy, "The daemon is ending", "Try again in a moment.");
-  JobRecord job = begun(chosen, chosen.folder / name);
+  JobRecord job = begun(chosen, chosen.folder / name, false);
   job.at_once = upload.at_once;
   if (job.at_once) store_.save(job, "to be printed as soon as it is ready");
   claim(job, upload.file);
@@ -125,11 +126,12 @@ JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
 JobRecord Foreman::prepare_again(JobRecord job, const JobRecord& old) {
   job.origin = old.origin;
   job.by_copy = true;
+  job.with_settings = has_settings_beside(old.filed);
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job, "the file of job " + std::to_string(old.id) + " again");
   live_[job.id].fetching_from = old.filed;
-  crew_.clerk.push(FetchOrder{job.id, old.filed, job.input, true});
+  crew_.clerk.push(FetchOrder{job.id, old.filed, job.input, job.with_settings, true});
   say(job, "job " + std::to_string(old.id) + " again");
   return job;
 }

@@ -4,6 +4,7 @@
 
 #include "base/duration.h"
 #include "daemon/job_file.h"
+#include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
 
@@ -184,6 +185,7 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
        progress_view(job, foreman.live(job.id), unit_of(foreman.config().printer(job.printer)))},
       {"trays", job.trays},
       {"tray", job.next_tray},
+      {"settings", job.with_settings ? json(settings_beside(job.name).string()) : json()},
       {"variant", job.variant},
       {"pays", job.pays},
       {"estimates", estimates_view(job)},

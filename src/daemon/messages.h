@@ -40,12 +40,16 @@ struct FetchOrder {  // copies a file that cannot be renamed to where it belongs
   std::int64_t job = 0;
   std::filesystem::path from;
   std::filesystem::path to;
-  bool keep = false;  // otherwise the original is removed
+  bool with_settings = false;  // the settings file beside it too
+  bool keep = false;           // otherwise the originals are removed
 };
-struct FileOrder {  // puts a job's file into done/ or failed/, with a note beside it
+// Puts a job's file into done/ or failed/, and beside it its settings file, a picture and a note.
+struct FileOrder {
   std::int64_t job = 0;
   std::filesystem::path from;
   std::filesystem::path to;
+  bool with_settings = false;
+  std::filesystem::path picture;  // copied where it is there
   std::filesystem::path note;
   std::string note_text;
 };

@@ -18,6 +18,8 @@ namespace packmerger {
 namespace {
 
 constexpr std::size_t kMaxName = 255;  // bytes of a file's name on Linux
+constexpr std::array<std::string_view, 4> kBeside = {".reason.txt", ".result.json", ".preview.png",
+                                                     ".toml"};
 
 [[noreturn]] void cannot_move(const fs::path& from, const fs::path& to, int why) {
   const std::string what = printable(from.string()) + " cannot be moved to " +
@@ -114,9 +116,11 @@ fs::path free_path(const fs::path& folder, const std::string& name) {
     const std::string tail =
         (number == 1 ? std::string() : " (" + std::to_string(number) + ")") + extension;
     const fs::path path = folder / (cut(plain.stem().string(), kMaxName - tail.size()) + tail);
-    if (!is_there(path) && !is_there(note_beside(path, ".reason.txt")) &&
-        !is_there(note_beside(path, ".result.json")))
-      return path;
+    const bool taken =
+        is_there(path) || std::any_of(kBeside.begin(), kBeside.end(), [&](std::string_view suffix) {
+          return is_there(note_beside(path, suffix));
+        });
+    if (!taken) return path;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/whole_file.h"
 
@@ -118,18 +119,28 @@ void WatchFolder::read_folder(double now_s, Found& found) {
   fs::directory_iterator entries(folder_, failed);
   if (failed) cannot_read(folder_, failed.value());
   std::set<std::string> present;
-  std::vector<std::tuple<std::int64_t, std::string>> ripe;  // when it was last changed, name
+  std::vector<std::string> candidates;
   for (; entries != fs::directory_iterator(); entries.increment(failed)) {
     const std::string name = entries->path().filename().string();
     if (is_temporary_name(name) || name == "done" || name == "failed") continue;
     present.insert(name);
     Seen& seen = seen_[name];
     if (!note_file(entries->path(), seen, now_s, found) || seen.refused_until_s > now_s) continue;
-    next_look_s_ = std::min(next_look_s_, now_s + kPendingLook_s);
-    if (is_ripe(entries->path(), seen, now_s)) ripe.emplace_back(seen.modified_ns, name);
+    candidates.push_back(name);
   }
   if (failed) cannot_read(folder_, failed.value());
   std::erase_if(seen_, [&](const auto& item) { return !present.contains(item.first); });
+  std::vector<std::tuple<std::int64_t, std::string>> ripe;  // when it was last changed, name
+  for (const std::string& name : candidates) {
+    Seen& seen = seen_.at(name);
+    if (is_settings_name(name)) {
+      tell_if_alone(name, seen, now_s, found);
+      continue;
+    }
+    next_look_s_ = std::min(next_look_s_, now_s + kPendingLook_s);
+    if (is_ripe(folder_ / name, seen, now_s) && are_settings_ripe(name, now_s))
+      ripe.emplace_back(seen.modified_ns, name);
+  }
   std::sort(ripe.begin(), ripe.end());
   for (const auto& [modified_ns, name] : ripe) found.whole.push_back(folder_ / name);
 }
@@ -154,6 +165,25 @@ bool WatchFolder::note_file(const fs::path& path, Seen& seen, double now_s, Foun
     seen.refused_until_s = 0;
   }
   return true;
+}
+
+// A model waits for its settings file while that is still being written.
+bool WatchFolder::are_settings_ripe(const std::string& model, double now_s) const {
+  const fs::path settings = settings_beside(folder_ / model);
+  const auto found = seen_.find(settings.filename().string());
+  if (found == seen_.end() || found->second.size < 0) return true;
+  return now_s - found->second.still_since_s >= rules_.still_s && !is_being_written(settings);
+}
+
+// A settings file is taken with its model. One that lies here by itself was meant for something.
+void WatchFolder::tell_if_alone(const std::string& name, Seen& seen, double now_s,
+                                Found& found) const {
+  const std::string model = fs::path(name).stem().string();
+  if (seen.told || seen_.contains(model) || now_s - seen.still_since_s < rules_.give_up_s) return;
+  seen.told = true;
+  found.ignored.push_back({folder_ / name, "it is a settings file, and " + printable(model) +
+                                               ", which it is named after, is not here. It "
+                                               "counts once that is dropped too."});
 }
 
 bool WatchFolder::is_ripe(const fs::path& path, const Seen& seen, double now_s) const {

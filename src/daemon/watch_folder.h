@@ -35,11 +35,14 @@ class WatchFolder {
   };
   struct Found {
     std::vector<std::filesystem::path> whole;  // ready to be taken, oldest first
-    std::vector<Ignored> ignored;              // told once each: symbolic links, devices, folders
+    // told once each: symbolic links, devices, folders, settings files without their model
+    std::vector<Ignored> ignored;
   };
 
   // Reads what happened and, when it is time, the folder. now_s: a clock that never goes back.
-  // A file stays in `whole` of every call until it is gone, or refused.
+  // A file stays in `whole` of every call until it is gone, or refused. A settings file
+  // (model_options.h) is never in it: whoever takes its model takes it too. A model waits while its
+  // settings file changes.
   // Throws Error{kIo} while the folder cannot be read.
   Found look(double now_s);
 
@@ -64,6 +67,8 @@ class WatchFolder {
   bool read_events();
   void read_folder(double now_s, Found& found);
   bool note_file(const std::filesystem::path& path, Seen& seen, double now_s, Found& found) const;
+  bool are_settings_ripe(const std::string& model, double now_s) const;
+  void tell_if_alone(const std::string& name, Seen& seen, double now_s, Found& found) const;
   bool is_ripe(const std::filesystem::path& path, const Seen& seen, double now_s) const;
 
   std::filesystem::path folder_;

@@ -20,7 +20,7 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::int64_t kSchema = 3;
+constexpr std::int64_t kSchema = 4;
 
 constexpr const char* kMakeTables = R"(
 CREATE TABLE job (
@@ -55,11 +55,16 @@ ALTER TABLE job ADD COLUMN at_once INTEGER NOT NULL DEFAULT 0;
 PRAGMA user_version = 3;
 )";
 
+constexpr const char* kAddSettings = R"(
+ALTER TABLE job ADD COLUMN with_settings INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 4;
+)";
+
 constexpr std::string_view kColumns =
     "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
     "next_tray, pays, "
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
-    "told, told_total, variant, at_once";
+    "told, told_total, variant, at_once, with_settings";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -87,6 +92,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.filed).bind(flag(job.filing_done)).bind(job.again_of);
   statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
   statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
+  statement.bind(flag(job.with_settings));
 }
 
 JobState read_state(Statement& row) {
@@ -125,6 +131,7 @@ JobRecord read_job(Statement& row) {
   job.told_total = row.integer();
   job.variant = row.text();
   job.at_once = row.flag();
+  job.with_settings = row.flag();
   return job;
 }
 
@@ -169,6 +176,7 @@ JobStore::JobStore(const std::filesystem::path& file)
   if (found < 1) connection.run(kMakeTables);
   if (found < 2) connection.run(kAddTold);
   if (found < 3) connection.run(kAddPrograms);
+  if (found < 4) connection.run(kAddSettings);
   transaction.commit();
 }
 

@@ -21,13 +21,14 @@
 namespace packmerger {
 
 struct JobRecord {
-  std::int64_t id = 0;   // from 1, never used again
-  std::string printer;   // the configured printer's name
-  std::string name;      // the file's name as it arrived
-  std::string origin;    // the path it arrived at; empty for a job printed again
-  std::string input;     // the path of the job's own copy; empty once it was filed
-  bool by_copy = false;  // claimed by copying, so that its original is removed last
-  std::string sha256;    // of its bytes; empty until they were hashed
+  std::int64_t id = 0;         // from 1, never used again
+  std::string printer;         // the configured printer's name
+  std::string name;            // the file's name as it arrived
+  std::string origin;          // the path it arrived at; empty for a job printed again
+  std::string input;           // the path of the job's own copy; empty once it was filed
+  bool by_copy = false;        // claimed by copying, so that its original is removed last
+  bool with_settings = false;  // a settings file came with it, and lies beside it
+  std::string sha256;          // of its bytes; empty until they were hashed
   JobState state = JobState::kClaiming;
   bool held = false;          // not sent until somebody approves it
   int attempt = 0;            // how often preparing began

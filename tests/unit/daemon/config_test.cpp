@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "daemon/model_options.h"
 
 namespace packmerger {
 namespace {
@@ -93,7 +94,7 @@ handoff_folder = "/mnt/share"
   ASSERT_EQ(config.printers.size(), 2U);
   const PrinterConfig& marlin = *config.printer("m");
   EXPECT_EQ(marlin.folder, folder_.path() / "drop");
-  EXPECT_THAT(marlin.prepare_options,
+  EXPECT_THAT(arguments_of(marlin.options),
               ElementsAre("--units", "in", "--size", "60", "--variant", "cheapest", "--no-split",
                           "--no-hollow", "--set", "gap_mm=0", "--set", "wall_mm=2"));
   EXPECT_FALSE(marlin.has_bed());

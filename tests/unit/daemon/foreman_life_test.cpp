@@ -48,8 +48,16 @@ class RandomLife {
   std::string any_printer() { return shop_.config_.printers[random_.below(3)].name; }
 
   void drop() {
-    dropped_.insert(std::to_string(shop_.drops_));
-    shop_.drop(any_printer(), "m" + std::to_string(random_.below(3)) + ".stl");
+    const std::string number = std::to_string(shop_.drops_);
+    const std::string name = "m" + std::to_string(random_.below(3)) + ".stl";
+    const std::string printer = any_printer();
+    dropped_.insert(number);
+    if (random_.below(3) == 0) {
+      settings_.insert(number);
+      std::ofstream(shop_.config_.printer(printer)->folder / (name + ".toml"))
+          << "# seed " << number;
+    }
+    shop_.drop(printer, name);
   }
 
   void clear() {
@@ -131,21 +139,35 @@ class RandomLife {
     shop_.start();
   }
 
-  // Every model that was ever dropped is there once or, printed again from its file, oftener.
+  // Every model that was ever dropped, and its settings beside it, is there once or, printed again
+  // from its file, oftener.
   void check_files() {
     std::set<std::string> found;
+    std::set<std::string> found_settings;
     for (const fs::path& root : {shop_.folder_.path() / "drop", shop_.config_.state / "jobs"}) {
       if (!fs::exists(root)) continue;
       for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root))
         if (entry.path().extension() == ".stl")
           found.insert(read_file(entry.path(), 100).substr(6));
+        else if (entry.path().extension() == ".toml")
+          check_settings(entry.path(), found_settings);
     }
     RC_ASSERT(found == dropped_);
+    RC_ASSERT(found_settings == settings_);
+  }
+
+  static void check_settings(const fs::path& file, std::set<std::string>& found) {
+    const std::string number = read_file(file, 100).substr(7);
+    found.insert(number);
+    const fs::path model = file.parent_path() / file.stem();
+    RC_ASSERT(fs::exists(model));
+    RC_ASSERT(read_file(model, 100) == "model " + number);
   }
 
   Random random_;
   Workshop shop_;
   std::set<std::string> dropped_;
+  std::set<std::string> settings_;  // numbers of the models that were dropped with some
   std::set<std::string> clear_;
   std::optional<PrepareOrder> preparing_;
   std::map<std::string, SendOrder> sending_;

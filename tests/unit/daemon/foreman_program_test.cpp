@@ -42,7 +42,10 @@ TEST(Programs, AreCheckedBesideAModelThatIsPrepared) {
 
 TEST(Programs, AreGivenNoOptionsOfModels) {
   Workshop shop;
-  shop.config_.printers[2].prepare_options = {"--scale", "2", "--set", "gap_mm=2", "--no-split"};
+  ModelOptions& options = shop.config_.printers[2].options;
+  options.scale = 2;
+  options.split = false;
+  options.set = {"gap_mm=2"};
   shop.config_.prepare.budget_s = 5;
   shop.drop("sim", "a.gcode");
   const std::vector<std::string> argv = shop.check_order()->argv;

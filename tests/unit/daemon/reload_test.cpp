@@ -50,7 +50,7 @@ TEST(Reload, EverySettingOfAPrinterCounts) {
   others[3].handoff_folder = "/other";
   others[4].approve = Approve::kAuto;
   others[5].simulated = true;
-  others[6].prepare_options = {"--size", "3"};
+  others[6].options.size_mm = 3;
   others[7].abilities.link.baud = 250000;
   for (const PrinterConfig& after : others)
     EXPECT_THAT(exchanged({before}, {after}, kIdle).changed, ElementsAre("p"));

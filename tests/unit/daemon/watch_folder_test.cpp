@@ -196,6 +196,58 @@ TEST_F(WatchFolderTest, AFormatWithoutAnEndWaitsForItsWriter) {
   EXPECT_THAT(look(1.1), ElementsAre("closed.obj"));
 }
 
+TEST_F(WatchFolderTest, AProgramThatGrowsIsNotWhole) {
+  std::ofstream file(path("a.gcode"));
+  for (int i = 0; i < 20; ++i) {
+    file << "G1 X" << i << "\n" << std::flush;
+    EXPECT_THAT(look(2), IsEmpty()) << i;
+  }
+  file.close();
+  EXPECT_THAT(look(0.5), IsEmpty());
+  EXPECT_THAT(look(1.1), ElementsAre("a.gcode"));
+}
+
+TEST_F(WatchFolderTest, SettingsComeBeforeOrAfterTheirModel) {
+  write(path("a.stl.toml"), "scale = 2\n");
+  look();
+  EXPECT_THAT(look(10), IsEmpty()) << "they are no model";
+  write(path("a.stl"), binary_stl(3));
+  look();
+  EXPECT_THAT(look(1.1), ElementsAre("a.stl"));
+
+  write(path("b.stl"), binary_stl(3));
+  look();
+  look(0.8);
+  write(path("b.stl.toml"), "scale = 2\n");
+  EXPECT_THAT(look(0.3), ElementsAre("a.stl")) << "b waits for its settings to be whole";
+  EXPECT_THAT(look(1.1), ElementsAre("a.stl", "b.stl"));
+  EXPECT_THAT(ignored_, IsEmpty());
+}
+
+TEST_F(WatchFolderTest, AModelWaitsForTheWriterOfItsSettings) {
+  write(path("a.stl"), binary_stl(3));
+  std::ofstream settings(path("a.stl.toml"));
+  settings << "scale = " << std::flush;
+  look();
+  EXPECT_THAT(look(2), IsEmpty());
+  EXPECT_THAT(look(2), IsEmpty());
+  settings << "2\n";
+  settings.close();
+  look();
+  EXPECT_THAT(look(1.1), ElementsAre("a.stl"));
+}
+
+TEST_F(WatchFolderTest, SettingsByThemselvesAreToldOnce) {
+  write(path("a.toml"), "scale = 2\n");
+  look();
+  EXPECT_THAT(look(50), IsEmpty());
+  EXPECT_THAT(ignored_, IsEmpty());
+  look(20);
+  look(20);
+  ASSERT_THAT(ignored_, SizeIs(1));
+  EXPECT_THAT(ignored_[0].reason, testing::HasSubstr("and a, which it is named after"));
+}
+
 TEST_F(WatchFolderTest, NoticedByReadingAgainWithoutAnyEvent) {
   watch_ = std::make_unique<WatchFolder>(path(), rules_);
   look();

@@ -77,6 +77,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.told_total = 300;
     job.variant = "program";
     job.at_once = true;
+    job.with_settings = true;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -94,7 +95,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.told, 120);
   EXPECT_EQ(back.told_total, 300);
   EXPECT_EQ(back.variant, "program");
-  EXPECT_TRUE(back.at_once);
+  EXPECT_TRUE(back.at_once && back.with_settings);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
@@ -110,6 +111,7 @@ TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
   ASSERT_EQ(sqlite3_exec(raw,
                          "ALTER TABLE job DROP COLUMN told; ALTER TABLE job DROP COLUMN told_total;"
                          "ALTER TABLE job DROP COLUMN variant; ALTER TABLE job DROP COLUMN at_once;"
+                         "ALTER TABLE job DROP COLUMN with_settings;"
                          "PRAGMA user_version = 1",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
