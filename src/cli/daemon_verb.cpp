@@ -78,4 +78,10 @@ std::string text_of(const nlohmann::json& object, const char* key) {
   return found == object.end() ? "" : plain_text(*found);
 }
 
+std::string correction_text(const nlohmann::json& correction) {
+  return fmt::format("{:.2f} times as long ({:.2f} to {:.2f}, {} prints)",
+                     correction.value("factor", 1.0), correction.value("low", 1.0),
+                     correction.value("high", 1.0), correction.value("prints", 0));
+}
+
 }  // namespace packmerger::cli

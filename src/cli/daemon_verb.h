@@ -38,4 +38,8 @@ std::string plain_text(const nlohmann::json& value);
 // A member that is a text; empty when it is not there.
 std::string text_of(const nlohmann::json& object, const char* key);
 
+// What finished prints taught, as the daemon tells it: "1.12 times as long (1.05 to 1.20, 7
+// prints)".
+std::string correction_text(const nlohmann::json& correction);
+
 }  // namespace packmerger::cli

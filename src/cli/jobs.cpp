@@ -31,7 +31,7 @@ void list(const Arguments& arguments) {
 }
 
 void print_line(const char* name, const std::string& text) {
-  if (!text.empty()) fmt::print("{:<10} {}\n", name, text);
+  if (!text.empty()) fmt::print("{:<11} {}\n", name, text);
 }
 
 // "printing 42 %, line 120 of 300, 0:12:34 elapsed, 0:17:20 left"
@@ -67,6 +67,28 @@ void print_program(const json& job) {
   print_line("estimate", text);
 }
 
+// What finished prints taught, beside the estimate and never within it.
+void print_times(const json& job) {
+  const json predicted = job.value("predicted_s", json());
+  const json printed = job.value("printed_s", json());
+  if (printed.is_number()) {
+    std::string text = duration_text(printed.get<double>());
+    if (predicted.is_number()) text += ", predicted " + duration_text(predicted.get<double>());
+    if (const json paused = job.value("paused_s", json()); paused.is_number())
+      text += ", and paused for " + duration_text(paused.get<double>());
+    print_line("printed", text);
+  }
+  const json correction = job.value("correction", json());
+  if (!correction.is_object() || !predicted.is_number()) return;
+  const double seconds = predicted.get<double>();
+  print_line("prints here", fmt::format("take {}, so about {} ({} to {}) where {} is predicted",
+                                        correction_text(correction),
+                                        duration_text(seconds * correction.value("factor", 1.0)),
+                                        duration_text(seconds * correction.value("low", 1.0)),
+                                        duration_text(seconds * correction.value("high", 1.0)),
+                                        duration_text(seconds)));
+}
+
 void print_comparison(const json& job) {
   const json estimates = job.value("estimates", json());
   if (estimates.is_object())
@@ -98,6 +120,7 @@ void show(const Arguments& arguments) {
   print_line("filed", text_of(job, "filed"));
   if (const json same = job.value("same_as", json()); same.is_number())
     print_line("bytes", fmt::format("the same as job {}", same.get<std::int64_t>()));
+  print_times(job);
   text_of(job, "kind") == "program" ? print_program(job) : print_comparison(job);
   print_history(job);
 }

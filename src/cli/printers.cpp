@@ -30,6 +30,14 @@ std::string print_text(const json& print) {
   return choices.empty() ? text : text + " (" + choices + ")";
 }
 
+// Where several kinds of estimates were corrected, the one that most prints taught.
+std::string takes_text(const json& printer) {
+  json best;
+  for (const json& one : printer.value("corrections", json::array()))
+    if (best.is_null() || one.value("prints", 0) > best.value("prints", 0)) best = one;
+  return best.is_null() ? "-" : correction_text(best);
+}
+
 std::vector<std::string> row_of(const json& printer) {
   const json job = printer.value("job", json());
   std::string doing = job.is_number() ? fmt::format("job {}", job.get<std::int64_t>()) : "idle";
@@ -44,12 +52,13 @@ std::vector<std::string> row_of(const json& printer) {
           text_of(printer, "bed"),
           connected.is_boolean() ? (connected.get<bool>() ? "yes" : "no") : "-",
           doing,
+          takes_text(printer),
           port.empty() ? text_of(printer, "handoff_folder") : port,
           text_of(printer, "folder")};
 }
 
-const std::vector<std::string> kHeading = {"PRINTER",   "PROFILE", "APPROVE", "BED",
-                                           "CONNECTED", "DOES",    "AT",      "FOLDER"};
+const std::vector<std::string> kHeading = {
+    "PRINTER", "PROFILE", "APPROVE", "BED", "CONNECTED", "DOES", "PRINTS TAKE", "AT", "FOLDER"};
 
 void list(const Arguments& arguments) {
   const json printers = ask(arguments.daemon, {{"verb", "printers.list"}});

@@ -12,6 +12,7 @@ namespace packmerger {
 namespace {
 
 constexpr int kMostDoublings = 4;  // of retry_s
+constexpr int kMostPrints = 100;   // that a correction is learned from, the newest
 
 bool is_there(const fs::path& path) {
   std::error_code ignored;
@@ -63,6 +64,14 @@ const LiveJob* Foreman::live(std::int64_t id) const {
 std::int64_t Foreman::sending_at(const std::string& printer) const {
   const auto found = sending_.find(printer);
   return found == sending_.end() ? 0 : found->second;
+}
+
+const std::optional<Correction>& Foreman::correction(const std::string& printer,
+                                                     const std::string& source) const {
+  const auto [found, is_new] = corrections_.try_emplace({printer, source});
+  if (is_new)
+    found->second = learn_correction(store_.finished_prints(printer, source, kMostPrints));
+  return found->second;
 }
 
 void Foreman::end(JobRecord& job, JobState state, const std::string& reason,

@@ -98,6 +98,10 @@ class Foreman {
   const std::set<std::int64_t>& preparing() const { return preparing_; }
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
+  // How much longer the printer takes than estimates of this source predict, as its finished prints
+  // taught; nothing while they are too few.
+  const std::optional<Correction>& correction(const std::string& printer,
+                                              const std::string& source) const;
   // Whether the printer is there, as far as that is told without disturbing it: of one behind a
   // serial server its last job tells. Nothing: not known, or it is handed its jobs.
   std::optional<bool> connected(const PrinterConfig& printer) const;
@@ -166,6 +170,8 @@ class Foreman {
   std::map<std::string, bool> there_;                // printers, when they were last looked at
   bool looked_ = false;                              // what is connected was told once
   std::map<std::string, std::string> advised_;       // printers, the port each was advised on
+  // By printer and source, learned when first asked for and forgotten when a print ends.
+  mutable std::map<std::pair<std::string, std::string>, std::optional<Correction>> corrections_;
   double now_s_ = 0;
   bool stopping_ = false;
 };

@@ -42,6 +42,8 @@ void Foreman::on(const Prepared& event) {
     job->trays = event.trays;
     job->estimates = event.estimates;
     job->variant = event.variant;
+    job->predicted_s = event.predicted_s;
+    job->predicted_by = event.predicted_by;
     job->pays = event.doubt.empty();
     job->reason = event.doubt;
     store_.save(*job, job->reason);
@@ -151,6 +153,9 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
     return end(job, JobState::kCancelled, with_told(job, "cancelled while printing" + tail),
                obeyed ? "" : event.failure.hint);
   }
+  job.printed_s += event.printed_s;
+  job.paused_s += event.paused_s;
+  corrections_.clear();
   if (handed_over) return end(job, JobState::kHandedOver, "", "", event.note);
   if (job.next_tray >= job.trays) return end(job, JobState::kDone, "", "");
   const std::string note = "tray " + std::to_string(job.next_tray) + " is printed";

@@ -115,6 +115,8 @@ JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
   job.trays = old.trays;
   job.estimates = old.estimates;
   job.variant = old.variant;
+  job.predicted_s = old.predicted_s;
+  job.predicted_by = old.predicted_by;
   job.pays = old.pays;
   job = store_.add(job);
   job.state = JobState::kApproved;

@@ -35,12 +35,19 @@ int count_trays(const json& report) {
   return trays;
 }
 
+// Nothing where that way does not fit.
+const json* estimate_of(const json& estimates, const std::string& variant) {
+  const auto found = estimates.find(variant == kProgramVariant ? "as_is" : variant);
+  if (found == estimates.end() || !found->is_object() || !found->value("fits", false))
+    return nullptr;
+  return &*found;
+}
+
 std::optional<double> cost_of(const json& estimates, const std::string& way) {
-  const auto found = estimates.find(way);
-  if (found == estimates.end() || !found->is_object() || found->value("fits", false) == false)
-    return std::nullopt;
-  const auto cost = found->find("cost");
-  if (cost == found->end() || !cost->is_number()) return std::nullopt;
+  const json* estimate = estimate_of(estimates, way);
+  if (estimate == nullptr) return std::nullopt;
+  const auto cost = estimate->find("cost");
+  if (cost == estimate->end() || !cost->is_number()) return std::nullopt;
   return cost->get<double>();
 }
 
@@ -57,6 +64,10 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.variant = report.value("variant", "packed");
     for (const json& warning : report.value("warnings", json::array())) {
       if (job.warning.empty()) job.warning = warning.at("text").get<std::string>();
+    }
+    if (const json* estimate = estimate_of(report.at("estimates"), job.variant)) {
+      job.predicted_s = estimate->value("time_s", 0.0);
+      job.predicted_by = estimate->value("source", "");
     }
     job.estimates = report.at("estimates").dump(-1, ' ', false, json::error_handler_t::replace);
     return job;

@@ -18,6 +18,8 @@ struct PreparedJob {
   std::string input_sha256;  // of the first input
   std::string variant;       // what was prepared: packed, hollow, solid or program
   std::string estimates;     // job.json's "estimates", JSON text
+  double predicted_s = 0;    // by the estimate of that variant; 0: none
+  std::string predicted_by;  // its source
   std::string warning;       // the first one's text; empty: none
 };
 

@@ -7,6 +7,7 @@
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
+#include "model/estimate.h"
 
 namespace packmerger {
 namespace {
@@ -124,6 +125,27 @@ json or_null(double value) { return value == 0 ? json() : json(value); }
 
 json or_null(std::int64_t id) { return id == 0 ? json() : json(id); }
 
+json correction_view(const std::optional<Correction>& correction, const std::string& source) {
+  if (!correction) return nullptr;
+  return {{"source", source},
+          {"factor", correction->factor},
+          {"low", correction->low},
+          {"high", correction->high},
+          {"prints", correction->prints},
+          {"left_out", correction->left_out}};
+}
+
+json corrections_view(const Foreman& foreman, const PrinterConfig& printer) {
+  json corrections = json::array();
+  for (const EstimateSource source : {EstimateSource::kSlicer, EstimateSource::kModel,
+                                      EstimateSource::kProgram, EstimateSource::kMoves}) {
+    const std::string name(source_name(source));
+    const json view = correction_view(foreman.correction(printer.name, name), name);
+    if (!view.is_null()) corrections.push_back(view);
+  }
+  return corrections;
+}
+
 std::string_view kind_name(const JobRecord& job) {
   return is_program(job.name) ? "program" : "model";
 }
@@ -189,6 +211,11 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"variant", job.variant},
       {"pays", job.pays},
       {"estimates", estimates_view(job)},
+      {"predicted_s", or_null(job.predicted_s)},
+      {"printed_s", or_null(job.printed_s)},
+      {"paused_s", or_null(job.paused_s)},
+      {"correction",
+       correction_view(foreman.correction(job.printer, job.predicted_by), job.predicted_by)},
       {"reason", job.reason},
       {"hint", job.hint},
       {"told", job.told_total == 0 ? json() : json{{"done", job.told}, {"total", job.told_total}}},
@@ -225,6 +252,7 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"connected", connected ? json(*connected) : json()},
           {"bed", bed},
           {"paused", record.paused},
+          {"corrections", corrections_view(foreman, printer)},
           {"job", sending == 0 ? json() : json(sending)},
           {"print", print_view(foreman.live(sending), unit_of(&printer))}};
 }
@@ -249,7 +277,11 @@ std::string result_note(const JobRecord& job) {
                      {"sha256", job.sha256},
                      {"folder", job.folder},
                      {"trays", job.trays},
+                     {"variant", job.variant},
                      {"estimates", estimates_view(job)},
+                     {"predicted_s", or_null(job.predicted_s)},
+                     {"printed_s", or_null(job.printed_s)},
+                     {"paused_s", or_null(job.paused_s)},
                      {"received_s", or_null(job.received_s)},
                      {"sending_s", or_null(job.sending_s)},
                      {"ended_s", or_null(job.ended_s)}};

@@ -87,9 +87,11 @@ struct Hashed {
 struct Prepared {
   std::int64_t job = 0;
   int trays = 0;
-  std::string estimates;  // JSON text
-  std::string variant;    // what was prepared: packed, hollow, solid or program
-  std::string doubt;      // why somebody should look at it before it is printed; empty: nothing
+  std::string estimates;     // JSON text
+  std::string variant;       // what was prepared: packed, hollow, solid or program
+  double predicted_s = 0;    // by the estimate of that variant; 0: none
+  std::string predicted_by;  // its source
+  std::string doubt;         // why somebody should look at it before it is printed; empty: nothing
 };
 struct PrepareFailed {
   std::int64_t job = 0;
@@ -111,8 +113,10 @@ enum class SendOutcome { kDone, kCancelled, kFailed, kNotStarted };  // kNotStar
 struct SendEnded {
   std::int64_t job = 0;
   SendOutcome outcome = SendOutcome::kDone;
-  Failure failure;   // unless done
-  std::string note;  // for the history: where it was handed over to
+  Failure failure;       // unless done
+  std::string note;      // for the history: where it was handed over to
+  double printed_s = 0;  // how long it took, pauses left out; 0: nobody can tell
+  double paused_s = 0;
 };
 struct DevicesSeen {               // whenever something was connected or went
   std::optional<Devices> devices;  // nothing: the system does not tell, and why

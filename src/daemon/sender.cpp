@@ -1,3 +1,6 @@
+#include <chrono>
+
+#include "daemon/print_clock.h"
 #include "daemon/send.h"
 #include "daemon/worker.h"
 
@@ -11,10 +14,16 @@ SendOutcome outcome_of(const Error& error, bool printed, const PrintControl& con
   return later && !printed ? SendOutcome::kNotStarted : SendOutcome::kFailed;
 }
 
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig& printer) {
   bool printed = false;
+  PrintClock clock;
   const auto listener = [&](const PrintReport& report) {
     printed = printed || report.done > 0;
+    clock.report(report.state, now_s());
     events.push(SendProgress{order.job, report});
   };
   try {
@@ -24,7 +33,10 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
       return {order.job, SendOutcome::kDone, {}, "handed over in " + target.string()};
     }
     send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control);
-    return {order.job, SendOutcome::kDone, {}, ""};
+    clock.end(now_s());
+    // a document was only taken: how long it is printed, the printer does not tell
+    if (!printer.abilities.is_sliced()) return {order.job, SendOutcome::kDone, {}, ""};
+    return {order.job, SendOutcome::kDone, {}, "", clock.printed_s(), clock.paused_s()};
   } catch (const Error& error) {
     return {order.job,
             outcome_of(error, printed, *order.control),

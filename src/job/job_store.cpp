@@ -20,7 +20,7 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::int64_t kSchema = 4;
+constexpr std::int64_t kSchema = 5;
 
 constexpr const char* kMakeTables = R"(
 CREATE TABLE job (
@@ -60,11 +60,23 @@ ALTER TABLE job ADD COLUMN with_settings INTEGER NOT NULL DEFAULT 0;
 PRAGMA user_version = 4;
 )";
 
+constexpr const char* kAddTimes = R"(
+ALTER TABLE job ADD COLUMN predicted_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN predicted_by TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN printed_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN paused_s REAL NOT NULL DEFAULT 0;
+CREATE INDEX job_printed ON job (printer, predicted_by) WHERE printed_s > 0;
+PRAGMA user_version = 5;
+)";
+
+constexpr double kLongPause_s = 3600;  // a print that stood still for longer teaches nothing
+
 constexpr std::string_view kColumns =
     "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
     "next_tray, pays, "
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
-    "told, told_total, variant, at_once, with_settings";
+    "told, told_total, variant, at_once, with_settings, predicted_s, "
+    "predicted_by, printed_s, paused_s";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -92,7 +104,8 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.filed).bind(flag(job.filing_done)).bind(job.again_of);
   statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
   statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
-  statement.bind(flag(job.with_settings));
+  statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
+  statement.bind(job.printed_s).bind(job.paused_s);
 }
 
 JobState read_state(Statement& row) {
@@ -132,6 +145,10 @@ JobRecord read_job(Statement& row) {
   job.variant = row.text();
   job.at_once = row.flag();
   job.with_settings = row.flag();
+  job.predicted_s = row.real();
+  job.predicted_by = row.text();
+  job.printed_s = row.real();
+  job.paused_s = row.real();
   return job;
 }
 
@@ -177,6 +194,7 @@ JobStore::JobStore(const std::filesystem::path& file)
   if (found < 2) connection.run(kAddTold);
   if (found < 3) connection.run(kAddPrograms);
   if (found < 4) connection.run(kAddSettings);
+  if (found < 5) connection.run(kAddTimes);
   transaction.commit();
 }
 
@@ -272,6 +290,23 @@ std::vector<JobEvent> JobStore::history(std::int64_t id) const {
     events.push_back(std::move(event));
   }
   return events;
+}
+
+std::vector<FinishedPrint> JobStore::finished_prints(const std::string& printer,
+                                                     std::string_view source, int limit) const {
+  Statement rows(database_->connection,
+                 "SELECT predicted_s, printed_s FROM job WHERE printer = ? AND predicted_by = ? "
+                 "AND state = 'done' AND printed_s > 0 AND predicted_s > 0 AND paused_s < ? "
+                 "ORDER BY id DESC LIMIT ?");
+  rows.bind(printer).bind(source).bind(kLongPause_s).bind(std::int64_t{limit});
+  std::vector<FinishedPrint> prints;
+  while (rows.step()) {
+    FinishedPrint print;
+    print.predicted_s = rows.real();
+    print.printed_s = rows.real();
+    prints.push_back(print);
+  }
+  return prints;
 }
 
 PrinterRecord JobStore::printer(const std::string& name) const {

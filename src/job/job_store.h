@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "job/correction.h"
 #include "job/job_state.h"
 
 namespace packmerger {
@@ -46,9 +47,13 @@ struct JobRecord {
   std::int64_t again_of = 0;  // the job whose program or file this one uses again; 0: none
   std::int64_t told = 0;      // of the tray sent last: lines or bytes that the printer acknowledged
   std::int64_t told_total = 0;  // of so many; 0: not known
-  double received_s = 0;        // Unix time
-  double sending_s = 0;         // when the first tray began; 0: not yet
-  double ended_s = 0;           // 0: not yet
+  double predicted_s = 0;       // by the estimate of what was prepared; 0: none
+  std::string predicted_by;     // that estimate's source, as job.json has it
+  double printed_s = 0;         // by the trays that are printed, pauses left out; 0: not known
+  double paused_s = 0;
+  double received_s = 0;  // Unix time
+  double sending_s = 0;   // when the first tray began; 0: not yet
+  double ended_s = 0;     // 0: not yet
 };
 
 struct PrinterRecord {
@@ -97,6 +102,10 @@ class JobStore {
   // The newest such job that came before this one; 0: none.
   std::int64_t same_bytes_before(const JobRecord& job) const;
   std::vector<JobEvent> history(std::int64_t id) const;
+  // At most `limit` prints that teach how long this printer takes, newest first: done, predicted by
+  // this source, and paused for less than an hour.
+  std::vector<FinishedPrint> finished_prints(const std::string& printer, std::string_view source,
+                                             int limit) const;
 
   // A printer never seen before: its bed is not clear, and it is not paused.
   PrinterRecord printer(const std::string& name) const;

@@ -78,6 +78,10 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.variant = "program";
     job.at_once = true;
     job.with_settings = true;
+    job.predicted_s = 12.5;
+    job.predicted_by = "slicer";
+    job.printed_s = 13.5;
+    job.paused_s = 1.5;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -96,9 +100,50 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.told_total, 300);
   EXPECT_EQ(back.variant, "program");
   EXPECT_TRUE(back.at_once && back.with_settings);
+  EXPECT_EQ(back.predicted_s, 12.5);
+  EXPECT_EQ(back.predicted_by, "slicer");
+  EXPECT_EQ(back.printed_s, 13.5);
+  EXPECT_EQ(back.paused_s, 1.5);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
+}
+
+TEST(JobStore, OnlyPrintsThatEndedWellTeach) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  const auto print = [&](const std::string& printer, JobState end, double printed_s,
+                         double paused_s = 0, const std::string& source = "slicer") {
+    JobRecord job = sample();
+    job.printer = printer;
+    job = store.add(job);
+    for (const JobState state : {JobState::kReceived, JobState::kPreparing, JobState::kReady,
+                                 JobState::kApproved, JobState::kSending}) {
+      job.state = state;
+      store.save(job);
+    }
+    job.state = end;
+    job.predicted_s = 100;
+    job.predicted_by = source;
+    job.printed_s = printed_s;
+    job.paused_s = paused_s;
+    store.save(job);
+  };
+  print("a", JobState::kDone, 110);
+  print("a", JobState::kDone, 120, 600);
+  print("a", JobState::kDone, 130, 4000);
+  print("a", JobState::kDone, 0);
+  print("a", JobState::kFailed, 50);
+  print("a", JobState::kCancelled, 60);
+  print("a", JobState::kDone, 140, 0, "moves");
+  print("b", JobState::kDone, 150);
+  const std::vector<FinishedPrint> prints = store.finished_prints("a", "slicer", 10);
+  ASSERT_EQ(prints.size(), 2U);
+  EXPECT_EQ(prints[0].printed_s, 120);
+  EXPECT_EQ(prints[1].printed_s, 110);
+  EXPECT_EQ(store.finished_prints("a", "slicer", 1).size(), 1U);
+  EXPECT_EQ(store.finished_prints("b", "slicer", 10).size(), 1U);
+  EXPECT_TRUE(store.finished_prints("c", "slicer", 10).empty());
 }
 
 // Takes the columns away that version 1 did not have.
@@ -108,12 +153,15 @@ TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
   const std::int64_t id = JobStore(file).add(sample()).id;
   sqlite3* raw = nullptr;
   ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(raw,
-                         "ALTER TABLE job DROP COLUMN told; ALTER TABLE job DROP COLUMN told_total;"
-                         "ALTER TABLE job DROP COLUMN variant; ALTER TABLE job DROP COLUMN at_once;"
-                         "ALTER TABLE job DROP COLUMN with_settings;"
-                         "PRAGMA user_version = 1",
-                         nullptr, nullptr, nullptr),
+  ASSERT_EQ(sqlite3_exec(
+                raw,
+                "ALTER TABLE job DROP COLUMN told; ALTER TABLE job DROP COLUMN told_total;"
+                "ALTER TABLE job DROP COLUMN variant; ALTER TABLE job DROP COLUMN at_once;"
+                "ALTER TABLE job DROP COLUMN with_settings; DROP INDEX job_printed;"
+                "ALTER TABLE job DROP COLUMN predicted_s; ALTER TABLE job DROP COLUMN predicted_by;"
+                "ALTER TABLE job DROP COLUMN printed_s; ALTER TABLE job DROP COLUMN paused_s;"
+                "PRAGMA user_version = 1",
+                nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(raw);
   JobStore store(file);
