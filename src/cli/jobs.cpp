@@ -89,6 +89,32 @@ void print_times(const json& job) {
                                         duration_text(seconds)));
 }
 
+// How the printers were compared, where one of them was proposed.
+void print_choice(const json& job) {
+  const json choice = job.value("choice", json());
+  if (!choice.is_object()) return;
+  const json printers = choice.value("printers", json::array());
+  fmt::print("\nThe {} of {} printers{}\n", text_of(choice, "prefer"), printers.size(),
+             choice.value("chosen", json()).is_null() ? ": none" : " is proposed");
+  std::vector<std::vector<std::string>> rows = {
+      {"", "PRINTER", "TIME", "WAITS", "READY IN", "COST", "PARTS", "TRAYS", ""}};
+  for (const json& one : printers) {
+    const std::string name = text_of(one, "printer");
+    const std::string mark = name == text_of(choice, "chosen") ? "->" : "";
+    if (!one.value("fits", false)) {
+      rows.push_back({mark, name, "-", "-", "-", "-", "-", "-", text_of(one, "reason")});
+      continue;
+    }
+    rows.push_back({mark, name, spoken_time(one.value("time_s", 0.0)),
+                    spoken_time(one.value("waits_s", 0.0)),
+                    spoken_time(one.value("ready_in_s", 0.0)),
+                    fmt::format("{:.2f} {}", one.value("cost", 0.0), text_of(one, "currency")),
+                    std::to_string(one.value("parts", 0)), std::to_string(one.value("trays", 0)),
+                    text_of(one, "trouble")});
+  }
+  print_table(rows);
+}
+
 void print_comparison(const json& job) {
   const json estimates = job.value("estimates", json());
   if (estimates.is_object())
@@ -121,6 +147,7 @@ void show(const Arguments& arguments) {
   if (const json same = job.value("same_as", json()); same.is_number())
     print_line("bytes", fmt::format("the same as job {}", same.get<std::int64_t>()));
   print_times(job);
+  print_choice(job);
   text_of(job, "kind") == "program" ? print_program(job) : print_comparison(job);
   print_history(job);
 }

@@ -38,6 +38,11 @@ std::string takes_text(const json& printer) {
   return best.is_null() ? "-" : correction_text(best);
 }
 
+std::string profile_text(const json& printer) {
+  const std::string prefer = text_of(printer, "prefer");
+  return text_of(printer, "profile") + (prefer.empty() ? "" : " (" + prefer + ")");
+}
+
 std::vector<std::string> row_of(const json& printer) {
   const json job = printer.value("job", json());
   std::string doing = job.is_number() ? fmt::format("job {}", job.get<std::int64_t>()) : "idle";
@@ -47,7 +52,7 @@ std::vector<std::string> row_of(const json& printer) {
   const json connected = printer.value("connected", json());
   const std::string port = text_of(printer, "port");
   return {text_of(printer, "name"),
-          text_of(printer, "profile"),
+          profile_text(printer),
           text_of(printer, "approve"),
           text_of(printer, "bed"),
           connected.is_boolean() ? (connected.get<bool>() ? "yes" : "no") : "-",

@@ -36,7 +36,7 @@ bool is_printer_name(std::string_view text) {
 }
 
 void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig& printer) {
-  reader.text("profile", "a profile's id or the path of a .toml file",
+  reader.text("profile", "a profile's id, the path of a .toml file, or \"auto\"",
               [&](const std::string& text) {
                 const bool is_path = text.find('/') != std::string::npos || text.ends_with(".toml");
                 printer.profile = is_path ? resolved(file, text).string() : text;
@@ -59,15 +59,55 @@ void read_printer_keys(TableReader& reader, const fs::path& file, PrinterConfig&
     printer.approve = text == "auto" ? Approve::kAuto : Approve::kAsk;
     return text == "auto" || text == "ask";
   });
+  reader.text("prefer", "\"cheapest\" or \"soonest\"", [&](const std::string& text) {
+    printer.prefer = text == "soonest" ? Prefer::kSoonest : Prefer::kCheapest;
+    return text == "cheapest" || text == "soonest";
+  });
   reader.flag("simulated", [&](bool value) { printer.simulated = value; });
   read_printer_options(reader, printer.options);
   reader.done();
+}
+
+// An entry for all printers has none of what belongs to one of them.
+void check_auto(const fs::path& file, int line, PrinterConfig& printer) {
+  const std::string table = "[printer." + printer.name + "]";
+  if (!printer.prefer) printer.prefer = Prefer::kCheapest;
+  if (!printer.port.empty() || !printer.handoff_folder.empty() || printer.simulated)
+    refuse(file, line, table + " stands for all printers: it has no port, handoff_folder or bed");
+}
+
+// Their costs have to be of one currency, and there have to be some.
+void check_compared(const fs::path& file, int line, const std::vector<PrinterConfig>& printers,
+                    const PrinterConfig& wish) {
+  const std::string table = "[printer." + wish.name + "]";
+  std::set<std::string> currencies;
+  for (const PrinterConfig& printer : printers) {
+    if (printer.is_auto()) continue;
+    currencies.insert(printer.abilities.cost.currency);
+    try {
+      Profile profile = printer.abilities;
+      for (const std::string& assignment : wish.options.set) set_profile_key(profile, assignment);
+      check_settings(profile);
+    } catch (const Error& error) {
+      refuse(file, line, table + ", for " + printer.name + ": " + error.what());
+    }
+  }
+  if (currencies.empty()) refuse(file, line, table + " compares the printers, and there is none");
+  if (currencies.size() > 1 && wish.prefer == Prefer::kCheapest)
+    refuse(file, line,
+           table + " cannot tell the cheapest: " + *currencies.begin() + " and " +
+               *currencies.rbegin() +
+               " are two currencies. Set cost.currency and the prices of one, or prefer soonest");
 }
 
 // What the profile's abilities ask for.
 void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   const std::string table = "[printer." + printer.name + "]";
   if (printer.profile.empty()) refuse(file, line, table + " needs the key profile");
+  if (printer.options.size_mm && printer.options.scale)
+    refuse(file, line, table + " cannot have both size_mm and scale");
+  if (printer.is_auto()) return check_auto(file, line, printer);
+  if (printer.prefer) refuse(file, line, table + " has a prefer without profile = \"auto\"");
   try {
     printer.abilities = read_profile(printer.profile);
     for (const std::string& assignment : printer.options.set)
@@ -76,8 +116,6 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what());
   }
-  if (printer.options.size_mm && printer.options.scale)
-    refuse(file, line, table + " cannot have both size_mm and scale");
   if (printer.hands_over() && printer.handoff_folder.empty())
     refuse(file, line, table + " needs the key handoff_folder: this printer takes no job by wire");
   if (printer.hands_over() && !printer.port.empty())
@@ -117,6 +155,9 @@ void read_printers(const fs::path& file, const toml::table& table, DaemonConfig&
       refuse(file, line, "[printer." + name + "] has the port of another printer");
     config.printers.push_back(std::move(printer));
   }
+  for (const PrinterConfig& printer : config.printers)
+    if (printer.is_auto())
+      check_compared(file, line_of(*table.get(printer.name)), config.printers, printer);
 }
 
 void read_top(TableReader& reader, const fs::path& file, DaemonConfig& config) {

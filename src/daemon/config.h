@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/printer.h"
@@ -13,6 +14,10 @@
 namespace packmerger {
 
 enum class Approve { kAsk, kAuto };
+enum class Prefer { kCheapest, kSoonest };  // of the printers that a model fits
+
+// The profile of an entry that stands for all printers: one of them is proposed for each model.
+inline constexpr std::string_view kAutoProfile = "auto";
 
 // Limits and choices of the child process that prepares a job.
 struct PrepareConfig {
@@ -62,15 +67,18 @@ struct ModelOptions {
 
 struct PrinterConfig {
   std::string name;
-  std::string profile;                   // an id, or the absolute path of a TOML file
+  std::string profile;                   // an id, the absolute path of a TOML file, or "auto"
   Profile abilities;                     // that profile, as it read at the start
   std::filesystem::path folder;          // the watched folder
   std::string port;                      // dialects gcode, s3g and usb
   std::filesystem::path handoff_folder;  // dialect handoff
   Approve approve = Approve::kAsk;
-  bool simulated = false;  // no bed has to be cleared
-  ModelOptions options;    // of every model for this printer
+  std::optional<Prefer> prefer;  // with profile "auto", and only there
+  bool simulated = false;        // no bed has to be cleared
+  ModelOptions options;          // of every model for this printer
 
+  // Whether it is no printer but stands for all that are: it is sent nothing.
+  bool is_auto() const { return profile == kAutoProfile; }
   bool hands_over() const { return abilities.dialect == Dialect::kHandoff; }
   bool has_bed() const { return !simulated && !hands_over(); }
 };

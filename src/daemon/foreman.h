@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/choose_printer.h"
 #include "daemon/config.h"
 #include "daemon/messages.h"
 #include "job/job_store.h"
@@ -129,6 +130,7 @@ class Foreman {
 
   void on(const PrepareProgress& event);
   void on(const Hashed& event);
+  void on(const Compared& event);
   void on(const Prepared& event);
   void on(const PrepareFailed& event);
   void on(const Fetched& event);
@@ -149,7 +151,14 @@ class Foreman {
   bool is_refused(const std::filesystem::path& file);
   void drop_idle_live_jobs(const std::vector<JobRecord>& open);
   void step(const JobRecord& job);
+  void check_takes(const PrinterConfig& printer, const std::string& name) const;
+  ModelOptions model_options(const PrinterConfig& printer, const PrinterConfig* wish,
+                             const JobRecord& job) const;
   bool is_worker_free(const JobRecord& job) const;
+  double busy_for_s(const PrinterConfig& printer) const;
+  std::string trouble_at(const PrinterConfig& printer) const;
+  void start_comparing(JobRecord job, const PrinterConfig& wish);
+  void propose(JobRecord job, const PrinterConfig& wish, const std::vector<PrinterOffer>& offers);
   std::vector<std::string> prepare_command(const PrinterConfig& printer,
                                            const JobRecord& job) const;
   void start_preparing(JobRecord job);

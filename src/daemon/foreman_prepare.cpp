@@ -15,6 +15,29 @@ std::string folder_name(int attempt) {
 }
 
 }  // namespace
+void Foreman::check_takes(const PrinterConfig& printer, const std::string& name) const {
+  if (!is_program(name)) return;
+  if (printer.is_auto())
+    throw Error(Fault::kBadInput, "A program is made for one printer",
+                "Give it to that printer, and only models to " + printer.name + ".");
+  check_program_kind(printer.abilities, kind_of_file(name));
+}
+
+// From the general to the particular: the daemon's settings, the printer's, those of the entry that
+// the printer was chosen by, and the model's own.
+ModelOptions Foreman::model_options(const PrinterConfig& printer, const PrinterConfig* wish,
+                                    const JobRecord& job) const {
+  ModelOptions options;
+  options.seed = config_.prepare.seed;
+  options.budget_s = config_.prepare.budget_s;
+  options = laid_over(options, printer.options);
+  if (wish != nullptr) options = laid_over(options, wish->options);
+  if (job.with_settings)
+    options =
+        laid_over(options, read_model_settings(settings_beside(job.input), printer.abilities));
+  return options;
+}
+
 std::vector<std::string> Foreman::prepare_command(const PrinterConfig& printer,
                                                   const JobRecord& job) const {
   std::vector<std::string> argv = {config_.prepare.program.string(),
@@ -36,14 +59,7 @@ std::vector<std::string> Foreman::prepare_command(const PrinterConfig& printer,
     add(profile_arguments_of(printer.options));
     return argv;
   }
-  ModelOptions options;
-  options.seed = config_.prepare.seed;
-  options.budget_s = config_.prepare.budget_s;
-  options = laid_over(options, printer.options);
-  if (job.with_settings)
-    options =
-        laid_over(options, read_model_settings(settings_beside(job.input), printer.abilities));
-  add(arguments_of(options));
+  add(arguments_of(model_options(printer, config_.printer(job.chosen_by), job)));
   return argv;
 }
 
@@ -57,6 +73,7 @@ bool Foreman::is_worker_free(const JobRecord& job) const {
 void Foreman::start_preparing(JobRecord job) {
   const PrinterConfig* printer = config_.printer(job.printer);
   if (printer == nullptr || !is_worker_free(job)) return;
+  if (printer->is_auto()) return start_comparing(job, *printer);
   std::vector<std::string> command;
   try {
     job.folder = (job_path(job.id) / folder_name(job.attempt + 1)).string();
@@ -69,11 +86,14 @@ void Foreman::start_preparing(JobRecord job) {
   job.state = JobState::kPreparing;
   store_.save(job, job.attempt == 1 ? "" : "attempt " + std::to_string(job.attempt));
   preparing_.insert(job.id);
-  LiveJob& live = live_[job.id];
-  live.cancel_prepare = std::make_shared<std::atomic<bool>>(false);
-  (is_program(job.name) ? crew_.checker : crew_.worker)
-      .push({job.id, job.input, job.folder, std::move(command), config_.prepare,
-             live.cancel_prepare});
+  PrepareOrder order;
+  order.job = job.id;
+  order.input = job.input;
+  order.out = job.folder;
+  order.argv = std::move(command);
+  order.limits = config_.prepare;
+  order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
+  (is_program(job.name) ? crew_.checker : crew_.worker).push(std::move(order));
   say(job, "preparing");
 }
 
@@ -81,6 +101,10 @@ void Foreman::approve_by_itself(JobRecord job) {
   const PrinterConfig* printer = config_.printer(job.printer);
   if (printer == nullptr || job.held || !job.pays) return;
   if (printer->approve != Approve::kAuto && !job.at_once) return;
+  if (!job.chosen_by.empty()) {  // nobody chose this printer
+    const PrinterConfig* wish = config_.printer(job.chosen_by);
+    if (wish == nullptr || wish->approve != Approve::kAuto) return;
+  }
   job.state = JobState::kApproved;
   job.reason.clear();
   std::string why = "approved by itself: it is the cheapest way";

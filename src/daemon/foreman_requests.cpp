@@ -33,7 +33,7 @@ const PrinterConfig& Foreman::get_printer(const std::string& name) const {
 JobRecord Foreman::uploaded(const UploadedJob& upload) {
   const PrinterConfig& chosen = get_printer(upload.printer);
   const std::string name = job_file_name(upload.name);
-  if (is_program(name)) check_program_kind(chosen.abilities, kind_of_file(name));
+  check_takes(chosen, name);
   if (stopping_) throw Error(Fault::kBusy, "The daemon is ending", "Try again in a moment.");
   JobRecord job = begun(chosen, chosen.folder / name, false);
   job.at_once = upload.at_once;
@@ -105,6 +105,8 @@ JobRecord Foreman::again(std::int64_t id) {
   job.name = old.name;
   job.sha256 = old.sha256;
   job.again_of = id;
+  job.chosen_by = old.chosen_by;
+  job.choice = old.choice;
   job.received_s = wall_clock_s();
   return prepared ? print_again(job, old) : prepare_again(job, old);
 }

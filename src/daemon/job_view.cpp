@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/duration.h"
 #include "daemon/job_file.h"
 #include "daemon/model_options.h"
@@ -116,9 +118,10 @@ json progress_view(const JobRecord& job, const LiveJob* live, std::string_view u
   return job.state == JobState::kSending ? print_view(live, unit) : json();
 }
 
-json estimates_view(const JobRecord& job) {
-  const json estimates = json::parse(job.estimates, nullptr, false);
-  return estimates.is_object() ? estimates : json();
+// JSON text that the store keeps; null where there is none.
+json object_view(const std::string& text) {
+  const json object = json::parse(text, nullptr, false);
+  return object.is_object() ? object : json();
 }
 
 json or_null(double value) { return value == 0 ? json() : json(value); }
@@ -195,6 +198,8 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
   return {
       {"id", job.id},
       {"printer", job.printer},
+      {"chosen_by", job.chosen_by.empty() ? json() : json(job.chosen_by)},
+      {"choice", object_view(job.choice)},
       {"name", job.name},
       {"kind", kind_name(job)},
       {"sha256", job.sha256},
@@ -210,7 +215,7 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"settings", job.with_settings ? json(settings_beside(job.name).string()) : json()},
       {"variant", job.variant},
       {"pays", job.pays},
-      {"estimates", estimates_view(job)},
+      {"estimates", object_view(job.estimates)},
       {"predicted_s", or_null(job.predicted_s)},
       {"printed_s", or_null(job.printed_s)},
       {"paused_s", or_null(job.paused_s)},
@@ -243,7 +248,8 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
   std::string bed = record.bed_clear ? "clear" : "not clear";
   if (!printer.has_bed()) bed = "none";
   return {{"name", printer.name},
-          {"profile", printer.abilities.id},
+          {"profile", printer.is_auto() ? printer.profile : printer.abilities.id},
+          {"prefer", printer.prefer ? json(prefer_name(*printer.prefer)) : json()},
           {"folder", printer.folder.string()},
           {"port", printer.port},
           {"handoff_folder", printer.handoff_folder.string()},
@@ -259,9 +265,10 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
 
 std::string daemon_status(const Foreman& foreman) {
   const std::vector<PrinterConfig>& printers = foreman.config().printers;
-  std::string text = printers.empty() ? "no printer is configured"
-                                      : fmt::format("{} printer{}", printers.size(),
-                                                    printers.size() > 1 ? "s" : "");
+  const auto count = std::count_if(printers.begin(), printers.end(),
+                                   [](const PrinterConfig& printer) { return !printer.is_auto(); });
+  std::string text = count == 0 ? "no printer is configured"
+                                : fmt::format("{} printer{}", count, count > 1 ? "s" : "");
   for (const std::int64_t job : foreman.preparing()) text += fmt::format("; preparing job {}", job);
   for (const PrinterConfig& printer : printers)
     if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
@@ -278,7 +285,8 @@ std::string result_note(const JobRecord& job) {
                      {"folder", job.folder},
                      {"trays", job.trays},
                      {"variant", job.variant},
-                     {"estimates", estimates_view(job)},
+                     {"estimates", object_view(job.estimates)},
+                     {"choice", object_view(job.choice)},
                      {"predicted_s", or_null(job.predicted_s)},
                      {"printed_s", or_null(job.printed_s)},
                      {"paused_s", or_null(job.paused_s)},

@@ -26,11 +26,17 @@ struct Failure {
 };
 
 // To a worker, which prepares one job after the other.
+struct CompareOrder {
+  std::string printer;
+  std::vector<std::string> argv;  // of the child process
+  std::string variant;            // what would be prepared there
+};
 struct PrepareOrder {
   std::int64_t job = 0;
   std::filesystem::path input;
-  std::filesystem::path out;      // the job folder to be made
-  std::vector<std::string> argv;  // of the child process
+  std::filesystem::path out;          // the job folder to be made
+  std::vector<std::string> argv;      // of the child process
+  std::vector<CompareOrder> compare;  // instead: only the figures, for each of these printers
   PrepareConfig limits;
   std::shared_ptr<std::atomic<bool>> cancel;
 };
@@ -93,6 +99,16 @@ struct Prepared {
   std::string predicted_by;  // its source
   std::string doubt;         // why somebody should look at it before it is printed; empty: nothing
 };
+struct ComparedPrinter {
+  std::string printer;
+  std::string variant;    // what would be prepared there
+  std::string estimates;  // JSON text
+  std::string failure;    // why there are none; empty: nothing failed
+};
+struct Compared {
+  std::int64_t job = 0;
+  std::vector<ComparedPrinter> printers;
+};
 struct PrepareFailed {
   std::int64_t job = 0;
   Failure failure;
@@ -122,7 +138,7 @@ struct DevicesSeen {               // whenever something was connected or went
   std::optional<Devices> devices;  // nothing: the system does not tell, and why
   std::optional<Failure> failure;
 };
-using Event = std::variant<PrepareProgress, Hashed, Prepared, PrepareFailed, Fetched, Filed,
-                           SendProgress, SendEnded, DevicesSeen>;
+using Event = std::variant<PrepareProgress, Hashed, Compared, Prepared, PrepareFailed, Fetched,
+                           Filed, SendProgress, SendEnded, DevicesSeen>;
 
 }  // namespace packmerger

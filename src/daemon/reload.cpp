@@ -12,7 +12,7 @@ namespace {
 bool is_same(const PrinterConfig& a, const PrinterConfig& b) {
   return a.profile == b.profile && a.folder == b.folder && a.port == b.port &&
          a.handoff_folder == b.handoff_folder && a.approve == b.approve &&
-         a.simulated == b.simulated && a.options == b.options &&
+         a.simulated == b.simulated && a.prefer == b.prefer && a.options == b.options &&
          profile_toml(a.abilities) == profile_toml(b.abilities);
 }
 

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <nlohmann/json.hpp>
 
 #include "base/process.h"
 #include "daemon/job_folder.h"
@@ -29,10 +30,17 @@ void remove_leftovers(const fs::path& out, const fs::path& temporary) {
   for (const fs::path& path : left) fs::remove_all(path, ignored);
 }
 
-ProcessResult run_child(const PrepareOrder& order, const fs::path& temporary,
-                        Queue<Event>& events) {
+// What a child is told, and what its progress counts for.
+struct ChildOrder {
+  const PrepareOrder& order;
+  const std::vector<std::string>& argv;
+  std::string stage;  // before the child's own; empty: its own alone
+};
+
+ProcessResult run_child(const ChildOrder& child, const fs::path& temporary, Queue<Event>& events) {
+  const PrepareOrder& order = child.order;
   ProcessSpec spec;
-  spec.argv = order.argv;
+  spec.argv = child.argv;
   spec.set_env = {{"TMPDIR", temporary.string()}};
   spec.folder = temporary;
   spec.nice = order.limits.nice;
@@ -43,7 +51,7 @@ ProcessResult run_child(const PrepareOrder& order, const fs::path& temporary,
     const std::optional<ProgressLine> line = progress_line(text);
     if (!line || Clock::now() - told < kReportEvery) return;
     told = Clock::now();
-    events.push(PrepareProgress{order.job, line->stage, line->fraction});
+    events.push(PrepareProgress{order.job, child.stage + line->stage, line->fraction});
   };
   return run_process(spec, order.limits.time_s, Progress({}, order.cancel.get()), on_line);
 }
@@ -58,13 +66,47 @@ void check_result(const ProcessResult& result, double time_s) {
   throw Error(failure.fault, failure.what, failure.hint);
 }
 
-Prepared prepare(const PrepareOrder& order, Queue<Event>& events) {
-  const std::string sha256 = sha256_hex_of_file(order.input);
-  events.push(Hashed{order.job, sha256});
+fs::path clean_temporary(const PrepareOrder& order) {
   const fs::path temporary = order.out.parent_path() / "tmp";
   remove_leftovers(order.out, temporary);
   fs::create_directories(temporary);
-  check_result(run_child(order, temporary, events), order.limits.time_s);
+  return temporary;
+}
+
+// What `packmerger compare --json` printed of its one profile.
+std::string estimates_in(const std::string& out) {
+  const auto all = nlohmann::json::parse(out, nullptr, false);
+  if (!all.is_object() || all.size() != 1)
+    throw Error(Fault::kInternal, "The comparison cannot be read", "Please report this as a bug.");
+  return all.begin()->dump();
+}
+
+// A printer that a model cannot be printed on is told with the others.
+Compared compare(const PrepareOrder& order, Queue<Event>& events) {
+  events.push(Hashed{order.job, sha256_hex_of_file(order.input)});
+  const fs::path temporary = clean_temporary(order);
+  Compared compared{order.job, {}};
+  for (const CompareOrder& each : order.compare) {
+    ComparedPrinter printer{each.printer, each.variant, "", ""};
+    try {
+      const ProcessResult result =
+          run_child({order, each.argv, each.printer + ": "}, temporary, events);
+      check_result(result, order.limits.time_s);
+      printer.estimates = estimates_in(result.out);
+    } catch (const Error& error) {
+      if (error.fault() == Fault::kInterrupted) throw;
+      printer.failure = error.what();
+    }
+    compared.printers.push_back(std::move(printer));
+  }
+  return compared;
+}
+
+Prepared prepare(const PrepareOrder& order, Queue<Event>& events) {
+  const std::string sha256 = sha256_hex_of_file(order.input);
+  events.push(Hashed{order.job, sha256});
+  const fs::path temporary = clean_temporary(order);
+  check_result(run_child({order, order.argv, ""}, temporary, events), order.limits.time_s);
   const PreparedJob job = read_prepared(order.out);
   if (job.input_sha256 != sha256)
     throw Error(Fault::kBusy, "The model was changed while it was being read",
@@ -75,6 +117,7 @@ Prepared prepare(const PrepareOrder& order, Queue<Event>& events) {
 
 Event prepare_or_fail(const PrepareOrder& order, Queue<Event>& events) {
   try {
+    if (!order.compare.empty()) return compare(order, events);
     return prepare(order, events);
   } catch (const Error& error) {
     return PrepareFailed{order.job, {error.fault(), error.what(), error.hint()}};

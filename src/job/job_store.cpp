@@ -20,7 +20,7 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::int64_t kSchema = 5;
+constexpr std::int64_t kSchema = 6;
 
 constexpr const char* kMakeTables = R"(
 CREATE TABLE job (
@@ -69,6 +69,12 @@ CREATE INDEX job_printed ON job (printer, predicted_by) WHERE printed_s > 0;
 PRAGMA user_version = 5;
 )";
 
+constexpr const char* kAddChoice = R"(
+ALTER TABLE job ADD COLUMN chosen_by TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN choice TEXT NOT NULL DEFAULT '';
+PRAGMA user_version = 6;
+)";
+
 constexpr double kLongPause_s = 3600;  // a print that stood still for longer teaches nothing
 
 constexpr std::string_view kColumns =
@@ -76,7 +82,7 @@ constexpr std::string_view kColumns =
     "next_tray, pays, "
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
     "told, told_total, variant, at_once, with_settings, predicted_s, "
-    "predicted_by, printed_s, paused_s";
+    "predicted_by, printed_s, paused_s, chosen_by, choice";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -105,7 +111,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
   statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
   statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
-  statement.bind(job.printed_s).bind(job.paused_s);
+  statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
 }
 
 JobState read_state(Statement& row) {
@@ -149,6 +155,8 @@ JobRecord read_job(Statement& row) {
   job.predicted_by = row.text();
   job.printed_s = row.real();
   job.paused_s = row.real();
+  job.chosen_by = row.text();
+  job.choice = row.text();
   return job;
 }
 
@@ -195,6 +203,7 @@ JobStore::JobStore(const std::filesystem::path& file)
   if (found < 3) connection.run(kAddPrograms);
   if (found < 4) connection.run(kAddSettings);
   if (found < 5) connection.run(kAddTimes);
+  if (found < 6) connection.run(kAddChoice);
   transaction.commit();
 }
 

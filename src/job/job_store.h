@@ -24,6 +24,8 @@ namespace packmerger {
 struct JobRecord {
   std::int64_t id = 0;         // from 1, never used again
   std::string printer;         // the configured printer's name
+  std::string chosen_by;       // the entry that proposed this printer; empty: a person named it
+  std::string choice;          // how the printers were compared for that, JSON text; may be empty
   std::string name;            // the file's name as it arrived
   std::string origin;          // the path it arrived at; empty for a job printed again
   std::string input;           // the path of the job's own copy; empty once it was filed

@@ -10,7 +10,6 @@ import time
 
 model, arguments = sys.argv[2], sys.argv[3:]
 value = {key: arguments[i + 1] for i, key in enumerate(arguments[:-1]) if key.startswith("--")}
-out = value["--out"]
 name = os.path.basename(model)
 
 
@@ -23,6 +22,18 @@ def estimate(cost):
             "parts": 2, "trays": 1}
 
 
+if sys.argv[1] == "compare":
+    profile = os.path.basename(value["--profile"]).removesuffix(".toml")
+    say("[ 50%] packing")
+    if "broken" in name or "only-" in name and "only-" + profile not in name:
+        say("error: It does not fit the printer.")
+        say("hint: Scale it down.")
+        sys.exit(65)
+    packed = estimate(5.0 if profile == "objet30" else 8.0)
+    print(json.dumps({profile: {"as_is": {"fits": False}, "solid": estimate(30.0), "hollow": estimate(20.0), "packed": packed}}))
+    sys.exit(0)
+
+out = value["--out"]
 say("[  0%] reading")
 if "broken" in name:
     say("error: The model has holes that cannot be closed.")

@@ -42,6 +42,37 @@ TEST_F(PackmergerdTest, PrintsWhatIsDropped) {
   EXPECT_FALSE(fs::exists(socket()));
 }
 
+TEST_F(PackmergerdTest, TheCheapestPrinterIsProposedAndNeverApprovedByItself) {
+  SimulatedMarlin marlin(0, path("record"));
+  configure(marlin.port());
+  start();
+  drop("any", "statue.stl");
+  ASSERT_TRUE(reaches(1, "ready"));
+  EXPECT_EQ(job(1).at("printer"), "o") << "5 EUR against 8";
+  EXPECT_EQ(job(1).at("chosen_by"), "any");
+  EXPECT_EQ(job(1).at("waits_for"), "approval") << "though o approves by itself what it is given";
+  ASSERT_EQ(job(1).at("choice").at("printers").size(), 2U);
+  ask({{"verb", "jobs.approve"}, {"id", 1}});
+  ASSERT_TRUE(reaches(1, "handed_over"));
+  const fs::path filed = path("state/folders/any/done/statue.stl.result.json");
+  ASSERT_TRUE(wait_until([&] { return fs::exists(filed); }));
+  EXPECT_EQ(json::parse(read_file(filed, 100000)).at("choice"), job(1).at("choice"));
+
+  drop("any", "only-quick.stl");
+  ASSERT_TRUE(reaches(2, "ready"));
+  EXPECT_EQ(job(2).at("printer"), "m") << "it does not fit the other one";
+  ask({{"verb", "jobs.approve"}, {"id", 2}});
+  EXPECT_TRUE(reaches(2, "done"));
+
+  drop("any", "broken.stl");
+  ASSERT_TRUE(reaches(3, "failed"));
+  EXPECT_THAT(job(3).at("reason"), HasSubstr("none of the printers: m: It does not fit"));
+  drop("any", "part.gcode");
+  ASSERT_TRUE(reaches(4, "failed"));
+  EXPECT_THAT(job(4).at("reason"), HasSubstr("made for one printer"));
+  EXPECT_EQ(end(SIGTERM).code, 0);
+}
+
 TEST_F(PackmergerdTest, ARealBedIsClearedTrayByTray) {
   SimulatedMarlin marlin(0, path("record"));
   configure(marlin.port(), false);

@@ -82,6 +82,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.predicted_by = "slicer";
     job.printed_s = 13.5;
     job.paused_s = 1.5;
+    job.chosen_by = "any";
+    job.choice = "{}";
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -104,6 +106,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.predicted_by, "slicer");
   EXPECT_EQ(back.printed_s, 13.5);
   EXPECT_EQ(back.paused_s, 1.5);
+  EXPECT_EQ(back.chosen_by, "any");
+  EXPECT_EQ(back.choice, "{}");
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
@@ -160,6 +164,7 @@ TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
                 "ALTER TABLE job DROP COLUMN with_settings; DROP INDEX job_printed;"
                 "ALTER TABLE job DROP COLUMN predicted_s; ALTER TABLE job DROP COLUMN predicted_by;"
                 "ALTER TABLE job DROP COLUMN printed_s; ALTER TABLE job DROP COLUMN paused_s;"
+                "ALTER TABLE job DROP COLUMN chosen_by; ALTER TABLE job DROP COLUMN choice;"
                 "PRAGMA user_version = 1",
                 nullptr, nullptr, nullptr),
             SQLITE_OK);

@@ -1,0 +1,118 @@
+// How the foreman finds the printer for a model that was dropped for any of them.
+#include <algorithm>
+
+#include "daemon/choose_printer.h"
+#include "daemon/foreman.h"
+#include "daemon/model_options.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+std::vector<std::string> compare_command(const DaemonConfig& config, const PrinterConfig& printer,
+                                         const JobRecord& job, const ModelOptions& options) {
+  std::vector<std::string> argv = {config.prepare.program.string(),
+                                   "compare",
+                                   job.input,
+                                   "--profile",
+                                   printer.profile,
+                                   "--json"};
+  ModelOptions compared = options;
+  compared.variant.reset();  // compare knows all of them
+  const std::vector<std::string> arguments = arguments_of(compared);
+  argv.insert(argv.end(), arguments.begin(), arguments.end());
+  return argv;
+}
+
+}  // namespace
+
+// For how long the printer is busy with what it prints and with what is ready to be printed there.
+double Foreman::busy_for_s(const PrinterConfig& printer) const {
+  double sum_s = 0;
+  for (const JobRecord& job : store_.open_jobs()) {
+    if (job.printer != printer.name || job.held || has_ended(job.state)) continue;
+    const double left_s = std::max(0.0, job.predicted_s - job.printed_s);
+    if (job.state == JobState::kReady || job.state == JobState::kApproved) sum_s += left_s;
+    if (job.state != JobState::kSending) continue;
+    const LiveJob* running = live(job.id);
+    const PrintReport print = running != nullptr ? running->print : PrintReport{};
+    const bool is_last = job.next_tray >= job.trays;
+    sum_s +=
+        is_last && print.remaining_s ? *print.remaining_s : std::max(0.0, left_s - print.elapsed_s);
+  }
+  return sum_s;
+}
+
+std::string Foreman::trouble_at(const PrinterConfig& printer) const {
+  if (store_.printer(printer.name).paused) return "paused";
+  return connected(printer).value_or(true) ? "" : "not connected";
+}
+
+void Foreman::start_comparing(JobRecord job, const PrinterConfig& wish) {
+  PrepareOrder order;
+  order.job = job.id;
+  order.input = job.input;
+  order.out = job_path(job.id) / "compared";
+  order.limits = config_.prepare;
+  try {
+    check_takes(wish, job.name);
+    for (const PrinterConfig& printer : config_.printers)
+      if (!printer.is_auto()) {
+        const ModelOptions options = model_options(printer, &wish, job);
+        order.compare.push_back({printer.name, compare_command(config_, printer, job, options),
+                                 options.variant.value_or("packed")});
+      }
+  } catch (const Error& error) {
+    return end(job, JobState::kFailed, printable(error.what()), error.hint());
+  }
+  job.state = JobState::kPreparing;
+  store_.save(job, "comparing the printers");
+  preparing_.insert(job.id);
+  order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
+  crew_.worker.push(std::move(order));
+  say(job, "comparing the printers");
+}
+
+void Foreman::on(const Compared& event) {
+  live_[event.job].cancel_prepare.reset();
+  preparing_.erase(event.job);
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (!job || job->state != JobState::kPreparing) return;
+  const PrinterConfig* wish = config_.printer(job->printer);
+  if (wish == nullptr || !wish->is_auto()) return;  // its settings are gone meanwhile
+  std::vector<PrinterOffer> offers;
+  for (const ComparedPrinter& compared : event.printers) {
+    const PrinterConfig* printer = config_.printer(compared.printer);
+    if (printer == nullptr) continue;
+    PrinterOffer offer;
+    offer.printer = printer->name;
+    offer.profile = printer->abilities.id;
+    offer.waits_s = busy_for_s(*printer);
+    offer.trouble = trouble_at(*printer);
+    offer.why_not = printable(compared.failure);
+    if (offer.fits()) take_estimates(offer, compared.estimates, compared.variant);
+    offers.push_back(std::move(offer));
+  }
+  propose(std::move(*job), *wish, offers);
+}
+
+void Foreman::propose(JobRecord job, const PrinterConfig& wish,
+                      const std::vector<PrinterOffer>& offers) {
+  const Prefer prefer = wish.prefer.value_or(Prefer::kCheapest);
+  const std::optional<std::size_t> best = best_offer(offers, prefer);
+  job.choice = choice_view(offers, prefer, best)
+                   .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  if (!best)
+    return end(job, JobState::kFailed,
+               "It can be printed by none of the printers: " + reasons_of(offers),
+               "Scale it down, or add a printer that it fits.");
+  job.chosen_by = wish.name;
+  job.printer = offers[*best].printer;
+  const std::string note = "proposed for " + job.printer + ", the " +
+                           std::string(prefer_name(prefer)) + " of " +
+                           std::to_string(offers.size());
+  store_.save(job, note);
+  say(job, note);
+}
+
+}  // namespace packmerger
