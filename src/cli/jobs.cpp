@@ -142,6 +142,9 @@ void show(const Arguments& arguments) {
   print_line("received", time_text(job.value("received_s", json())));
   print_line("ended", time_text(job.value("ended_s", json())));
   print_line("folder", text_of(job, "folder"));
+  print_line("profile", text_of(job, "profile"));
+  if (const json seed = job.value("seed", json()); seed.is_number())
+    print_line("seed", std::to_string(seed.get<std::int64_t>()));
   print_line("settings", text_of(job, "settings"));
   print_line("filed", text_of(job, "filed"));
   if (const json same = job.value("same_as", json()); same.is_number())

@@ -41,6 +41,8 @@ void Foreman::on(const Prepared& event) {
     job->state = JobState::kReady;
     job->trays = event.trays;
     job->estimates = event.estimates;
+    job->profile = event.profile;
+    job->seed = event.seed;
     job->variant = event.variant;
     job->predicted_s = event.predicted_s;
     job->predicted_by = event.predicted_by;
@@ -157,8 +159,8 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   job.paused_s += event.paused_s;
   corrections_.clear();
   if (handed_over) return end(job, JobState::kHandedOver, "", "", event.note);
-  if (job.next_tray >= job.trays) return end(job, JobState::kDone, "", "");
-  const std::string note = "tray " + std::to_string(job.next_tray) + " is printed";
+  const std::string note = with_told(job, "tray " + std::to_string(job.next_tray) + " is printed");
+  if (job.next_tray >= job.trays) return end(job, JobState::kDone, "", "", note);
   ++job.next_tray;
   job.state = JobState::kApproved;
   store_.save(job, note);

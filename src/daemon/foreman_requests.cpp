@@ -116,6 +116,8 @@ JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
   job.folder = old.folder;
   job.trays = old.trays;
   job.estimates = old.estimates;
+  job.profile = old.profile;
+  job.seed = old.seed;
   job.variant = old.variant;
   job.predicted_s = old.predicted_s;
   job.predicted_by = old.predicted_by;

@@ -62,6 +62,8 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.title = fs::path(input.at("file").get<std::string>()).stem().string();
     job.input_sha256 = input.at("sha256").get<std::string>();
     job.variant = report.value("variant", "packed");
+    job.profile = report.value("profile", json::object()).value("id", "");
+    job.seed = report.value("seed", std::int64_t{0});
     for (const json& warning : report.value("warnings", json::array())) {
       if (job.warning.empty()) job.warning = warning.at("text").get<std::string>();
     }

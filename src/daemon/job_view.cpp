@@ -6,6 +6,7 @@
 
 #include "base/duration.h"
 #include "daemon/job_file.h"
+#include "daemon/json_values.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "firmware_io/port.h"
@@ -118,16 +119,6 @@ json progress_view(const JobRecord& job, const LiveJob* live, std::string_view u
   return job.state == JobState::kSending ? print_view(live, unit) : json();
 }
 
-// JSON text that the store keeps; null where there is none.
-json object_view(const std::string& text) {
-  const json object = json::parse(text, nullptr, false);
-  return object.is_object() ? object : json();
-}
-
-json or_null(double value) { return value == 0 ? json() : json(value); }
-
-json or_null(std::int64_t id) { return id == 0 ? json() : json(id); }
-
 json correction_view(const std::optional<Correction>& correction, const std::string& source) {
   if (!correction) return nullptr;
   return {{"source", source},
@@ -198,8 +189,8 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
   return {
       {"id", job.id},
       {"printer", job.printer},
-      {"chosen_by", job.chosen_by.empty() ? json() : json(job.chosen_by)},
-      {"choice", object_view(job.choice)},
+      {"chosen_by", or_null(job.chosen_by)},
+      {"choice", object_or_null(job.choice)},
       {"name", job.name},
       {"kind", kind_name(job)},
       {"sha256", job.sha256},
@@ -213,9 +204,11 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"trays", job.trays},
       {"tray", job.next_tray},
       {"settings", job.with_settings ? json(settings_beside(job.name).string()) : json()},
+      {"profile", or_null(job.profile)},
+      {"seed", job.profile.empty() || is_program(job.name) ? json() : json(job.seed)},
       {"variant", job.variant},
       {"pays", job.pays},
-      {"estimates", object_view(job.estimates)},
+      {"estimates", object_or_null(job.estimates)},
       {"predicted_s", or_null(job.predicted_s)},
       {"printed_s", or_null(job.printed_s)},
       {"paused_s", or_null(job.paused_s)},
@@ -274,32 +267,6 @@ std::string daemon_status(const Foreman& foreman) {
     if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
       text += fmt::format("; job {} is at {}", job, printer.name);
   return text;
-}
-
-std::string result_note(const JobRecord& job) {
-  const json note = {{"job", job.id},
-                     {"printer", job.printer},
-                     {"state", state_name(job.state)},
-                     {"name", job.name},
-                     {"sha256", job.sha256},
-                     {"folder", job.folder},
-                     {"trays", job.trays},
-                     {"variant", job.variant},
-                     {"estimates", object_view(job.estimates)},
-                     {"choice", object_view(job.choice)},
-                     {"predicted_s", or_null(job.predicted_s)},
-                     {"printed_s", or_null(job.printed_s)},
-                     {"paused_s", or_null(job.paused_s)},
-                     {"received_s", or_null(job.received_s)},
-                     {"sending_s", or_null(job.sending_s)},
-                     {"ended_s", or_null(job.ended_s)}};
-  return note.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
-std::string reason_note(const JobRecord& job) {
-  return fmt::format("{}: {}\n{}{}job {} on {}\n", printable(job.name),
-                     job.reason.empty() ? std::string(state_name(job.state)) : job.reason, job.hint,
-                     job.hint.empty() ? "" : "\n", job.id, job.printer);
 }
 
 }  // namespace packmerger

@@ -93,7 +93,9 @@ struct Hashed {
 struct Prepared {
   std::int64_t job = 0;
   int trays = 0;
-  std::string estimates;     // JSON text
+  std::string estimates;  // JSON text
+  std::string profile;    // its id
+  std::int64_t seed = 0;
   std::string variant;       // what was prepared: packed, hollow, solid or program
   double predicted_s = 0;    // by the estimate of that variant; 0: none
   std::string predicted_by;  // its source

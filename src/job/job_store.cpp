@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "job/job_schema.h"
 #include "job/sqlite.h"
 
 namespace packmerger {
@@ -20,61 +21,6 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::int64_t kSchema = 6;
-
-constexpr const char* kMakeTables = R"(
-CREATE TABLE job (
-  id INTEGER PRIMARY KEY AUTOINCREMENT,
-  printer TEXT NOT NULL, name TEXT NOT NULL, origin TEXT NOT NULL, input TEXT NOT NULL,
-  by_copy INTEGER NOT NULL,
-  sha256 TEXT NOT NULL, state TEXT NOT NULL, held INTEGER NOT NULL, attempt INTEGER NOT NULL,
-  folder TEXT NOT NULL, trays INTEGER NOT NULL, next_tray INTEGER NOT NULL, pays INTEGER NOT NULL,
-  estimates TEXT NOT NULL, reason TEXT NOT NULL, hint TEXT NOT NULL, filed TEXT NOT NULL,
-  filing_done INTEGER NOT NULL, again_of INTEGER NOT NULL, received_s REAL NOT NULL,
-  sending_s REAL NOT NULL, ended_s REAL NOT NULL);
-CREATE INDEX job_open ON job (id) WHERE ended_s = 0 OR filing_done = 0;
-CREATE INDEX job_bytes ON job (sha256);
-CREATE TABLE event (
-  job INTEGER NOT NULL REFERENCES job (id) ON DELETE CASCADE,
-  at_s REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL);
-CREATE INDEX event_job ON event (job);
-CREATE TABLE printer (
-  name TEXT PRIMARY KEY, bed_clear INTEGER NOT NULL, paused INTEGER NOT NULL) WITHOUT ROWID;
-PRAGMA user_version = 1;
-)";
-
-constexpr const char* kAddTold = R"(
-ALTER TABLE job ADD COLUMN told INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE job ADD COLUMN told_total INTEGER NOT NULL DEFAULT 0;
-PRAGMA user_version = 2;
-)";
-
-constexpr const char* kAddPrograms = R"(
-ALTER TABLE job ADD COLUMN variant TEXT NOT NULL DEFAULT '';
-ALTER TABLE job ADD COLUMN at_once INTEGER NOT NULL DEFAULT 0;
-PRAGMA user_version = 3;
-)";
-
-constexpr const char* kAddSettings = R"(
-ALTER TABLE job ADD COLUMN with_settings INTEGER NOT NULL DEFAULT 0;
-PRAGMA user_version = 4;
-)";
-
-constexpr const char* kAddTimes = R"(
-ALTER TABLE job ADD COLUMN predicted_s REAL NOT NULL DEFAULT 0;
-ALTER TABLE job ADD COLUMN predicted_by TEXT NOT NULL DEFAULT '';
-ALTER TABLE job ADD COLUMN printed_s REAL NOT NULL DEFAULT 0;
-ALTER TABLE job ADD COLUMN paused_s REAL NOT NULL DEFAULT 0;
-CREATE INDEX job_printed ON job (printer, predicted_by) WHERE printed_s > 0;
-PRAGMA user_version = 5;
-)";
-
-constexpr const char* kAddChoice = R"(
-ALTER TABLE job ADD COLUMN chosen_by TEXT NOT NULL DEFAULT '';
-ALTER TABLE job ADD COLUMN choice TEXT NOT NULL DEFAULT '';
-PRAGMA user_version = 6;
-)";
-
 constexpr double kLongPause_s = 3600;  // a print that stood still for longer teaches nothing
 
 constexpr std::string_view kColumns =
@@ -82,7 +28,8 @@ constexpr std::string_view kColumns =
     "next_tray, pays, "
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
     "told, told_total, variant, at_once, with_settings, predicted_s, "
-    "predicted_by, printed_s, paused_s, chosen_by, choice";
+    "predicted_by, printed_s, paused_s, chosen_by, choice, "
+    "profile, seed";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -112,6 +59,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
   statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
   statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
+  statement.bind(job.profile).bind(job.seed);
 }
 
 JobState read_state(Statement& row) {
@@ -157,6 +105,8 @@ JobRecord read_job(Statement& row) {
   job.paused_s = row.real();
   job.chosen_by = row.text();
   job.choice = row.text();
+  job.profile = row.text();
+  job.seed = row.integer();
   return job;
 }
 
@@ -191,20 +141,7 @@ JobStore::JobStore(const std::filesystem::path& file)
     : database_(std::make_unique<Database>(file)) {
   Connection& connection = database_->connection;
   connection.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
-  Transaction transaction(connection);
-  Statement version(connection, "PRAGMA user_version");
-  const std::int64_t found = version.step() ? version.integer() : 0;
-  version.finish();
-  if (found > kSchema)
-    throw Error(Fault::kIo, file.string() + " was written by a newer PackMerger",
-                "Install that version again, or name another state folder.");
-  if (found < 1) connection.run(kMakeTables);
-  if (found < 2) connection.run(kAddTold);
-  if (found < 3) connection.run(kAddPrograms);
-  if (found < 4) connection.run(kAddSettings);
-  if (found < 5) connection.run(kAddTimes);
-  if (found < 6) connection.run(kAddChoice);
-  transaction.commit();
+  bring_up_to_date(connection, file);
 }
 
 JobStore::JobStore(JobStore&&) noexcept = default;

@@ -38,6 +38,8 @@ struct JobRecord {
   std::string folder;         // the prepared job folder; empty until preparing began
   int trays = 0;              // 0 until prepared
   int next_tray = 1;          // the tray that is sent now or next, from 1
+  std::string profile;        // the id of the profile it was prepared with
+  std::int64_t seed = 0;      // of its random choices; a program has none
   std::string variant;        // what was prepared: packed, hollow, solid, or program: as it came
   bool pays = false;          // nothing speaks against printing what was prepared
   bool at_once = false;       // whoever sent it asked for it to be printed as soon as it is ready

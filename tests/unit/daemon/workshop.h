@@ -91,8 +91,8 @@ class Workshop {
   void prepare(const PrepareOrder& order, int trays = 1, bool pays = true) {
     fs::create_directories(order.out);
     std::ofstream(order.out / "job.json") << "{}";
-    tell(Prepared{order.job, trays, R"({"packed":{"fits":true,"cost":1}})", "packed", 60, "slicer",
-                  pays ? "" : "packing does not pay"});
+    tell(Prepared{order.job, trays, R"({"packed":{"fits":true,"cost":1}})", "marlin", 1, "packed",
+                  60, "slicer", pays ? "" : "packing does not pay"});
   }
 
   // The clerk's work, really done.

@@ -84,6 +84,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.paused_s = 1.5;
     job.chosen_by = "any";
     job.choice = "{}";
+    job.profile = "marlin";
+    job.seed = 7;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -108,6 +110,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.paused_s, 1.5);
   EXPECT_EQ(back.chosen_by, "any");
   EXPECT_EQ(back.choice, "{}");
+  EXPECT_EQ(back.profile, "marlin");
+  EXPECT_EQ(back.seed, 7);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
@@ -165,6 +169,7 @@ TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
                 "ALTER TABLE job DROP COLUMN predicted_s; ALTER TABLE job DROP COLUMN predicted_by;"
                 "ALTER TABLE job DROP COLUMN printed_s; ALTER TABLE job DROP COLUMN paused_s;"
                 "ALTER TABLE job DROP COLUMN chosen_by; ALTER TABLE job DROP COLUMN choice;"
+                "ALTER TABLE job DROP COLUMN profile; ALTER TABLE job DROP COLUMN seed;"
                 "PRAGMA user_version = 1",
                 nullptr, nullptr, nullptr),
             SQLITE_OK);

@@ -1,0 +1,83 @@
+#include "job/job_schema.h"
+
+#include <array>
+
+#include "base/error.h"
+
+namespace packmerger::sqlite {
+namespace {
+
+constexpr const char* kMakeTables = R"(
+CREATE TABLE job (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  printer TEXT NOT NULL, name TEXT NOT NULL, origin TEXT NOT NULL, input TEXT NOT NULL,
+  by_copy INTEGER NOT NULL,
+  sha256 TEXT NOT NULL, state TEXT NOT NULL, held INTEGER NOT NULL, attempt INTEGER NOT NULL,
+  folder TEXT NOT NULL, trays INTEGER NOT NULL, next_tray INTEGER NOT NULL, pays INTEGER NOT NULL,
+  estimates TEXT NOT NULL, reason TEXT NOT NULL, hint TEXT NOT NULL, filed TEXT NOT NULL,
+  filing_done INTEGER NOT NULL, again_of INTEGER NOT NULL, received_s REAL NOT NULL,
+  sending_s REAL NOT NULL, ended_s REAL NOT NULL);
+CREATE INDEX job_open ON job (id) WHERE ended_s = 0 OR filing_done = 0;
+CREATE INDEX job_bytes ON job (sha256);
+CREATE TABLE event (
+  job INTEGER NOT NULL REFERENCES job (id) ON DELETE CASCADE,
+  at_s REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL);
+CREATE INDEX event_job ON event (job);
+CREATE TABLE printer (
+  name TEXT PRIMARY KEY, bed_clear INTEGER NOT NULL, paused INTEGER NOT NULL) WITHOUT ROWID;
+PRAGMA user_version = 1;
+)";
+
+constexpr const char* kAddTold = R"(
+ALTER TABLE job ADD COLUMN told INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN told_total INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 2;
+)";
+
+constexpr const char* kAddPrograms = R"(
+ALTER TABLE job ADD COLUMN variant TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN at_once INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 3;
+)";
+
+constexpr const char* kAddSettings = R"(
+ALTER TABLE job ADD COLUMN with_settings INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 4;
+)";
+
+constexpr const char* kAddTimes = R"(
+ALTER TABLE job ADD COLUMN predicted_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN predicted_by TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN printed_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN paused_s REAL NOT NULL DEFAULT 0;
+CREATE INDEX job_printed ON job (printer, predicted_by) WHERE printed_s > 0;
+PRAGMA user_version = 5;
+)";
+
+constexpr const char* kAddChoice = R"(
+ALTER TABLE job ADD COLUMN chosen_by TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN choice TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN profile TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN seed INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 6;
+)";
+
+// Each makes the version after the one before it; the first begins with an empty file.
+constexpr std::array<const char*, 6> kSteps = {kMakeTables,  kAddTold,  kAddPrograms,
+                                               kAddSettings, kAddTimes, kAddChoice};
+
+}  // namespace
+
+void bring_up_to_date(Connection& connection, const std::filesystem::path& file) {
+  Transaction transaction(connection);
+  Statement version(connection, "PRAGMA user_version");
+  const auto found = static_cast<std::size_t>(version.step() ? version.integer() : 0);
+  version.finish();
+  if (found > kSteps.size())
+    throw Error(Fault::kIo, file.string() + " was written by a newer PackMerger",
+                "Install that version again, or name another state folder.");
+  for (std::size_t step = found; step < kSteps.size(); ++step) connection.run(kSteps.at(step));
+  transaction.commit();
+}
+
+}  // namespace packmerger::sqlite

@@ -1,0 +1,56 @@
+// What a job's history promises: its bytes, how it was prepared, what was sent, how it ended.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/progress_file.h"
+#include "unit/daemon/workshop.h"
+
+namespace packmerger {
+namespace {
+
+TEST(History, TheSameNameAgainIsASecondJobAndTheSameBytesAreTold) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.tell(Hashed{1, std::string(64, 'a')});
+  shop.prepare(shop.prepare_order().value());
+  shop.drop("sim", "a.stl");
+  shop.tell(Hashed{2, std::string(64, 'b')});
+  shop.prepare(shop.prepare_order().value());
+  shop.drop("real", "b.stl");
+  shop.tell(Hashed{3, std::string(64, 'a')});
+  EXPECT_EQ(shop.view(2).at("name"), "a.stl");
+  EXPECT_EQ(shop.view(2).at("same_as"), nullptr) << "other bytes";
+  EXPECT_EQ(shop.view(3).at("same_as"), 1) << "another name, another printer, the same bytes";
+  EXPECT_THAT(shop.log_, testing::HasSubstr("the same bytes as job 1"));
+}
+
+TEST(History, KeepsEverythingAboutAPrintAcrossARestart) {
+  Workshop shop;
+  shop.foreman_->clear("real");
+  shop.drop("real", "a.stl");
+  shop.tell(Hashed{1, std::string(64, 'a')});
+  shop.prepare(shop.prepare_order().value());
+  const SendOrder send = shop.send_order("real").value();
+  ProgressFile(send.told_file).acknowledged(300, 300);
+  SendEnded end{1, SendOutcome::kDone, {}, ""};
+  end.printed_s = 71;
+  shop.tell(end);
+  shop.run_the_clerk();
+  shop.start();
+  const json job = shop.view(1);
+  EXPECT_EQ(job.at("state"), "done");
+  EXPECT_EQ(job.at("sha256"), std::string(64, 'a'));
+  EXPECT_EQ(job.at("profile"), "marlin");
+  EXPECT_EQ(job.at("seed"), 1);
+  EXPECT_EQ(job.at("predicted_s"), 60);
+  EXPECT_EQ(job.at("printed_s"), 71);
+  EXPECT_TRUE(job.at("estimates").contains("packed"));
+  EXPECT_EQ(job.at("told").at("done"), 300);
+  EXPECT_EQ(job.at("history").back().at("state"), "done");
+  EXPECT_EQ(job.at("history").back().at("note"),
+            "tray 1 is printed, told up to line 300 of 300 (100 %)");
+  EXPECT_GE(job.at("ended_s"), job.at("sending_s"));
+}
+
+}  // namespace
+}  // namespace packmerger
