@@ -137,7 +137,7 @@ TEST_F(PackmergerdTest, OneStateFolderOneDaemon) {
   configure("/nonexistent/port");
   start();
   const ProcessResult second = run_process(
-      {{program_.string(), "--config", path("d.toml").string()}, {}, {}, {}, 0, 0}, 30, {});
+      {{program_.string(), "--config", path("d.toml").string()}, {}, {}, {}, 0, 0, {}}, 30, {});
   EXPECT_EQ(second.status.code, 75);
   EXPECT_THAT(second.err, HasSubstr("Another packmergerd works"));
   EXPECT_TRUE(answers());
@@ -148,7 +148,7 @@ TEST_F(PackmergerdTest, BadSettingsAreToldWithTheLine) {
   const auto code = [&](const std::string& text) {
     std::ofstream(path("bad.toml")) << text;
     return run_process(
-               {{program_.string(), "--config", path("bad.toml").string()}, {}, {}, {}, 0, 0}, 30,
+               {{program_.string(), "--config", path("bad.toml").string()}, {}, {}, {}, 0, 0, {}}, 30,
                {})
         .status.code;
   };
@@ -156,9 +156,9 @@ TEST_F(PackmergerdTest, BadSettingsAreToldWithTheLine) {
   EXPECT_EQ(code("[prepare]\nprogram = \"/nonexistent\"\n[printer.o]\nprofile = "
                  "\"objet30\"\nhandoff_folder = \"/tmp\"\n"),
             78);
-  EXPECT_EQ(run_process({{program_.string(), "--wrong"}, {}, {}, {}, 0, 0}, 30, {}).status.code, 2);
+  EXPECT_EQ(run_process({{program_.string(), "--wrong"}, {}, {}, {}, 0, 0, {}}, 30, {}).status.code, 2);
   EXPECT_EQ(
-      run_process({{program_.string(), "--config", "/none"}, {}, {}, {}, 0, 0}, 30, {}).status.code,
+      run_process({{program_.string(), "--config", "/none"}, {}, {}, {}, 0, 0, {}}, 30, {}).status.code,
       66);
 }
 
