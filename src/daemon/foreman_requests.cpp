@@ -37,7 +37,9 @@ JobRecord Foreman::uploaded(const UploadedJob& upload) {
   if (stopping_) throw Error(Fault::kBusy, "The daemon is ending", "Try again in a moment.");
   JobRecord job = begun(chosen, chosen.folder / name, false);
   job.at_once = upload.at_once;
+  job.held = upload.held;
   if (job.at_once) store_.save(job, "to be printed as soon as it is ready");
+  if (job.held) store_.save(job, "to be printed when somebody approves it");
   claim(job, upload.file);
   if (const std::optional<JobRecord> taken = store_.find(job.id)) return *taken;
   throw Error(Fault::kBusy, "The file cannot be taken now", "Look into the daemon's messages.");

@@ -1,15 +1,44 @@
 #include "daemon/front_desk.h"
 
+#include <chrono>
+#include <future>
+#include <thread>
+
 #include "base/error.h"
 #include "base/files.h"
 #include "daemon/api.h"
+#include "daemon/doors/door.h"
+#include "daemon/web_guard.h"
 
 namespace packmerger {
 namespace {
 
 constexpr double kPublishEvery_s = 0.25;
 
-fs::path uploads_folder(const DaemonConfig& config) { return config.state / "uploads"; }
+bool is_reached_by_others(const std::string& address) {
+  return !address.starts_with("127.") && address != "::1";
+}
+
+// The same for this machine and printer always, and told by nothing else.
+std::string uuid_of(const std::string& printer) {
+  std::string machine;
+  try {
+    machine = read_file("/etc/machine-id", 64);
+  } catch (const Error&) {
+    machine = machine_name();
+  }
+  std::string text = sha256_hex("packmerger " + machine + " " + printer).substr(0, 32);
+  for (const std::size_t at : {20, 16, 12, 8}) text.insert(at, "-");
+  return text;
+}
+
+MdnsService service_of(const PrinterConfig& printer, int port) {
+  return {printer.name + " (PackMerger on " + machine_name() + ")",
+          static_cast<std::uint16_t>(port),
+          {"path=/printers/" + printer.name, std::string("version=") + kOctoprintVersion,
+           std::string("api=") + kOctoprintApi, "uuid=" + uuid_of(printer.name),
+           "model=" + printer.abilities.id, "vendor=PackMerger"}};
+}
 
 }  // namespace
 
@@ -30,12 +59,19 @@ FrontDesk::~FrontDesk() {
 
 void FrontDesk::add_to(std::vector<pollfd>& waiting) const {
   waiting.push_back({questions_.fd(), POLLIN, 0});
+  waiting.push_back({lines_.fd(), POLLIN, 0});
 }
 
 void FrontDesk::serve(double now_s) {
-  if (config_.web.port == 0) return;
+  while (const std::optional<std::string> line = lines_.try_pop()) log_(*line);
   answer_questions();
-  open(now_s);
+  if (web_ && web_->config() != config_.web) {
+    close();
+    retry_s_ = 0;
+    if (config_.web.port == 0) log_("web server ended");
+  }
+  if (config_.web.port != 0) open(now_s);
+  announce();
   publish(now_s);
 }
 
@@ -44,7 +80,7 @@ void FrontDesk::open(double now_s) {
   if (now_s < retry_s_ || (web_ && !is_elsewhere)) return;
   try {
     fs::create_directories(uploads_folder(config_));
-    web_.reset();
+    close();
     web_ = std::make_unique<Web>(config_, keys_, questions_, events_);
     log_("web server at http://" + web_->address() + ":" + std::to_string(web_->port()) +
          (keys_.empty() ? " (no key yet: packmerger keys add NAME)" : ""));
@@ -54,6 +90,32 @@ void FrontDesk::open(double now_s) {
     told_ = error.what();
     retry_s_ = now_s + config_.retry_s;
   }
+}
+
+void FrontDesk::announce() {
+  std::vector<MdnsService> services;
+  if (web_ && is_reached_by_others(web_->address()))
+    for (const PrinterConfig& printer : config_.printers)
+      services.push_back(service_of(printer, web_->port()));
+  if (mdns_ && mdns_->services() == services) return;
+  mdns_.reset();
+  if (!services.empty())
+    mdns_.emplace(std::move(services), [this](const std::string& line) { lines_.push(line); });
+}
+
+// The connections' threads may wait for answers while they are ended.
+void FrontDesk::close() {
+  if (!web_) return;
+  events_.end_streams();
+  std::promise<void> ended;
+  std::thread ending([&] {
+    web_.reset();
+    ended.set_value();
+  });
+  const std::future<void> has_ended = ended.get_future();
+  while (has_ended.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
+    answer_questions();
+  ending.join();
 }
 
 void FrontDesk::answer_questions() {

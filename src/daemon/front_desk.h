@@ -6,12 +6,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/foreman.h"
 #include "daemon/key_ring.h"
 #include "daemon/web.h"
+#include "notify/mdns.h"
 
 namespace packmerger {
 
@@ -30,11 +32,14 @@ class FrontDesk {
   void add_to(std::vector<pollfd>& waiting) const;
 
   // A server that cannot listen is tried again, and told once. With the first key it goes from this
-  // machine alone to the address of the settings.
+  // machine alone to the address of the settings; with other settings it is another server. While
+  // other machines reach it, its printers are announced to them.
   void serve(double now_s);
 
  private:
   void open(double now_s);
+  void close();
+  void announce();
   void answer_questions();
   void publish(double now_s);
 
@@ -44,7 +49,9 @@ class FrontDesk {
   Log log_;
   WebQuestions questions_;
   WebEvents events_;
+  Queue<std::string> lines_;  // for the log, from other threads
   std::unique_ptr<Web> web_;
+  std::optional<Mdns> mdns_;
   double retry_s_ = 0;
   double published_s_ = 0;
   std::string told_;

@@ -78,6 +78,7 @@ struct UploadedJob {
   std::string name;  // as its sender calls it; job_file_name() makes a name of it
   std::filesystem::path file;
   bool at_once = false;  // print it as soon as it is ready: its sender approves it
+  bool held = false;     // whatever the settings say, print nothing before somebody approves it
 };
 
 // To the loop.

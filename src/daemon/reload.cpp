@@ -56,7 +56,6 @@ std::vector<std::string> needing_restart(const DaemonConfig& now, const DaemonCo
   if (now.state != wanted.state) keys.emplace_back("state");
   if (now.socket != wanted.socket) keys.emplace_back("socket");
   if (now.socket_mode != wanted.socket_mode) keys.emplace_back("socket_mode");
-  if (now.web != wanted.web) keys.emplace_back("[web]");
   return keys;
 }
 
@@ -68,7 +67,7 @@ Reload::Reload(DaemonConfig& config, std::function<DaemonConfig()> read, const F
       crew_(crew),
       log_(std::move(log)) {}
 
-// What a thread of the web server reads (state, [web]) is left as it is.
+// What other threads read is left as it is: the web server has a copy of its settings.
 void Reload::read() {
   try {
     DaemonConfig wanted = read_();
@@ -76,6 +75,7 @@ void Reload::read() {
       log_("warning: a change of " + joined(keys) + " counts when the daemon is started again");
     config_.prepare = wanted.prepare;
     config_.watch = wanted.watch;
+    config_.web = wanted.web;
     config_.webhooks = wanted.webhooks;
     config_.mqtt = wanted.mqtt;
     config_.retry_s = wanted.retry_s;

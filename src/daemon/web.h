@@ -2,28 +2,20 @@
 // docs/API.md lists the routes.
 #pragma once
 
-#include <future>
 #include <memory>
-#include <optional>
 #include <string>
-#include <variant>
 
-#include "base/queue.h"
 #include "daemon/config.h"
 #include "daemon/key_ring.h"
-#include "daemon/messages.h"
+#include "daemon/web_desk.h"
 #include "daemon/web_events.h"
 #include "daemon/web_guard.h"
 #include "http/server.h"
 
 namespace packmerger {
 
-// To the loop, which answers as it answers the local socket (api.h).
-struct WebQuestion {
-  std::variant<std::string, UploadedJob> ask;  // a request as JSON text
-  std::promise<std::string> answer;
-};
-using WebQuestions = Queue<std::shared_ptr<WebQuestion>>;
+// Where files lie while they come in.
+std::filesystem::path uploads_folder(const DaemonConfig& config);
 
 // Runs while it lives. Requests wait for the loop for some seconds at most.
 class Web {
@@ -35,6 +27,7 @@ class Web {
   Web& operator=(const Web&) = delete;
   ~Web();
 
+  const WebConfig& config() const { return config_; }
   const std::string& address() const { return address_; }
   int port() const { return server_->port(); }
 
@@ -42,14 +35,14 @@ class Web {
   BodyPlan plan(const HttpRequest& request);
   HttpReply answer(HttpRequest& request);
   HttpReply routed(HttpRequest& request);
-  HttpReply ask(std::variant<std::string, UploadedJob> question);
   HttpReply upload(HttpRequest& request);
   HttpReply file_of_job(const std::string& id, const std::string& name);
   HttpReply events();
   HttpReply page(const HttpRequest& request) const;
 
-  const DaemonConfig& config_;
-  WebQuestions& questions_;
+  const WebConfig config_;  // as it was: the loop may read the settings again
+  const std::filesystem::path uploads_;
+  WebDesk desk_;
   WebEvents& events_;
   WebGuard guard_;
   std::string address_;

@@ -23,16 +23,23 @@ bool WebEvents::watched() const {
   return streams_ > 0;
 }
 
+void WebEvents::end_streams() {
+  const std::lock_guard lock(mutex_);
+  ++round_;
+  changed_.notify_all();
+}
+
 void WebEvents::close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;
   changed_.notify_all();
 }
 
-std::optional<std::string> WebEvents::next(std::uint64_t& seen) {
+std::optional<std::string> WebEvents::next(std::uint64_t& seen, std::uint64_t round) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, kQuiet, [&] { return closed_ || version_ > seen; });
-  if (closed_) return std::nullopt;
+  const auto has_ended = [&] { return closed_ || round_ != round; };
+  changed_.wait_for(lock, kQuiet, [&] { return has_ended() || version_ > seen; });
+  if (has_ended()) return std::nullopt;
   if (version_ == seen) return ": still here\n\n";
   seen = version_;
   return "event: state\ndata: " + state_ + "\n\n";
@@ -46,7 +53,9 @@ std::function<std::optional<std::string>()> WebEvents::stream() {
     const std::lock_guard gone(mutex_);
     --streams_;
   });
-  return [this, watching, seen = std::uint64_t{0}]() mutable { return next(seen); };
+  return [this, watching, seen = std::uint64_t{0}, round = round_]() mutable {
+    return next(seen, round);
+  };
 }
 
 }  // namespace packmerger

@@ -19,7 +19,8 @@ class WebEvents {
   void publish(std::string state);
   // Whether somebody watches, so that the loop need not make a text for nobody.
   bool watched() const;
-  void close();  // ends every stream
+  void end_streams();  // ends those there are
+  void close();        // and lets none begin
 
   // A stream of server-sent events for one client: the state now, then every change, and a comment
   // after ten quiet seconds, so that a client that went away is noticed. Nothing where too many
@@ -27,12 +28,13 @@ class WebEvents {
   std::function<std::optional<std::string>()> stream();
 
  private:
-  std::optional<std::string> next(std::uint64_t& seen);
+  std::optional<std::string> next(std::uint64_t& seen, std::uint64_t round);
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::string state_;
   std::uint64_t version_ = 0;
+  std::uint64_t round_ = 0;  // streams of an earlier one end
   int streams_ = 0;
   bool closed_ = false;
 };

@@ -40,11 +40,6 @@ bool is_local(const HttpRequest& request) {
          request.header("Forwarded").empty() && request.header("Via").empty();
 }
 
-std::string machine_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
 }  // namespace
 
 HttpReply web_error(int status, Fault fault, const std::string& what, const std::string& hint) {
@@ -54,6 +49,11 @@ HttpReply web_error(int status, Fault fault, const std::string& what, const std:
   reply.status = status;
   reply.body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   return reply;
+}
+
+std::string machine_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 std::string_view key_of(const HttpRequest& request) {
@@ -117,7 +117,8 @@ std::optional<HttpReply> WebGuard::refused(const HttpRequest& request, Access ac
   if (key.empty()) {
     if (access == Access::kRead && is_local(request)) return std::nullopt;
     return web_error(401, Fault::kUsage, "This needs a key",
-                     "Make one with packmerger keys add NAME, and send it as X-Api-Key.");
+                     "Make one with packmerger keys add NAME, and send it as X-Api-Key; user and "
+                     "password are not taken.");
   }
   if (keys_.owner(key)) return std::nullopt;
   note_wrong(request.peer, now_s);

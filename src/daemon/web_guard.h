@@ -48,6 +48,9 @@ class WebGuard {
   std::map<std::string, Tries> tries_;
 };
 
+// What this machine calls itself; empty where it has no name.
+std::string machine_name();
+
 // The key that comes with a request: X-Api-Key, or Authorization: Bearer. Empty where none does.
 std::string_view key_of(const HttpRequest& request);
 

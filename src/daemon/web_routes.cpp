@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "daemon/doors/doors.h"
+
 namespace packmerger {
 namespace {
 
@@ -62,6 +64,12 @@ bool fits(const std::vector<std::string>& pattern, const std::vector<std::string
 }  // namespace
 
 WebRoute route_of(const HttpRequest& request) {
+  if (leads_to_door(request.path)) {
+    WebRoute door;
+    door.target = WebTarget::kDoor;
+    door.access = Access::kChange;
+    return door;
+  }
   if (!request.path.starts_with("/api/")) {
     const bool reads = request.method == "GET";
     return {.target = reads ? WebTarget::kPage : WebTarget::kNone,

@@ -15,6 +15,7 @@ enum class WebTarget {
   kUpload,   // a model for a printer
   kJobFile,  // a file of a job's folder
   kEvents,   // server-sent events
+  kDoor,     // what slicers ask: doors/doors.h
   kPage,     // a file of the page
   kNone      // there is no such route
 };

@@ -72,8 +72,8 @@ struct HttpServer::Daemon {
       static_cast<Daemon*>(closure)->patience.awaits(sender, HttpSender::Awaits::kHeaders);
   }
   // Told of every connection, before its socket is closed too.
-  static void connection(void* closure, MHD_Connection* connection, void** sender,
-                         MHD_ConnectionNotificationCode code) {
+  static void on_connection(void* closure, MHD_Connection* connection, void** sender,
+                            MHD_ConnectionNotificationCode code) {
     Patience& patience = static_cast<Daemon*>(closure)->patience;
     if (code == MHD_CONNECTION_NOTIFY_STARTED) {
       const MHD_ConnectionInfo* info =
@@ -117,7 +117,7 @@ HttpServer::HttpServer(const std::string& address, int port, HttpHandler handler
       flags, 0, nullptr, nullptr, Daemon::step, daemon_.get(), MHD_OPTION_LISTEN_SOCKET,
       socket.get(), MHD_OPTION_URI_LOG_CALLBACK, Daemon::begun, daemon_.get(),
       MHD_OPTION_NOTIFY_COMPLETED, Daemon::ended, daemon_.get(), MHD_OPTION_NOTIFY_CONNECTION,
-      Daemon::connection, daemon_.get(), MHD_OPTION_UNESCAPE_CALLBACK, Daemon::as_it_is, nullptr,
+      Daemon::on_connection, daemon_.get(), MHD_OPTION_UNESCAPE_CALLBACK, Daemon::as_it_is, nullptr,
       MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.memory_bytes, MHD_OPTION_CONNECTION_LIMIT,
       limits.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT, limits.connections_of_a_peer,
       MHD_OPTION_CONNECTION_TIMEOUT, limits.idle_s, MHD_OPTION_STRICT_FOR_CLIENT, 1,

@@ -10,7 +10,9 @@
 #include <sys/eventfd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <memory>
+#include <utility>
 
 namespace packmerger {
 namespace {
@@ -58,7 +60,9 @@ class Announcement {
     is_lost_ = false;
     client_ = avahi_client_new(avahi_simple_poll_get(poll_.get()), AVAHI_CLIENT_NO_FAIL, on_client,
                                this, &error);
-    if (client_ == nullptr) tell_absent(avahi_strerror(error));
+    if (client_ != nullptr) return;
+    group_ = nullptr;
+    tell_absent(avahi_strerror(error));
   }
 
   void disconnect() {

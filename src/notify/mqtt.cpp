@@ -9,6 +9,7 @@
 #include <chrono>
 #include <optional>
 #include <random>
+#include <utility>
 
 namespace packmerger {
 namespace {

@@ -3,6 +3,7 @@
 import http.client
 import json
 import pathlib
+import signal
 import socket
 import sys
 import time
@@ -11,7 +12,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import program
-from web_daemon import STL, Case, Daemon
+from web_daemon import STL, Case, Daemon, free_port, wait_for
 
 
 class Use(Case):
@@ -201,6 +202,30 @@ class Guesses(Case):
             refused += status == 429
         self.assertGreater(refused, 0)
         self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume")[0], 429, "locked for a minute, even with the right key")
+
+
+class Reload(unittest.TestCase):
+    def test_the_server_follows_its_settings(self):
+        daemon = Daemon()
+        try:
+            settings = (daemon.folder / "c.toml").read_text()
+            connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=30)
+            connection.request("GET", "/api/v1/events")
+            stream = connection.getresponse()  # a page that watches does not keep the old server
+            old, daemon.port = daemon.port, free_port()
+            daemon.configure(settings.replace(f"port = {old}", "port = PORT"))
+            daemon.process.send_signal(signal.SIGHUP)
+            wait_for(daemon.is_open, "the new port")
+            self.assertEqual(daemon.ask("GET", "/api/v1/printers")[0], 200)
+            stream.read()  # to its end
+            connection.close()
+            daemon.port = old
+            self.assertFalse(daemon.is_open())
+            daemon.configure(settings.replace(f"port = {old}", "port = 0"))
+            daemon.process.send_signal(signal.SIGHUP)
+            wait_for(lambda: "web server ended" in daemon.said(), "its end")
+        finally:
+            daemon.close()
 
 
 class Alone(unittest.TestCase):

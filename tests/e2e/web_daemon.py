@@ -43,7 +43,7 @@ def wait_for(holds, what, patience=60):
 class Daemon:
     """packmergerd in a folder of its own; models wait for ever, so that no geometry runs."""
 
-    def __init__(self, settings=SETTINGS, environment=None):
+    def __init__(self, settings=SETTINGS, environment=None, furnish=lambda folder: None):
         self.holder = tempfile.TemporaryDirectory(prefix="packmerger-web-")
         self.folder = pathlib.Path(self.holder.name)
         self.port = free_port()
@@ -55,6 +55,7 @@ class Daemon:
         wait = self.folder / "wait"
         wait.write_text("#!/bin/sh\nexec sleep 1000\n")
         wait.chmod(0o755)
+        furnish(self.folder)
         self.environment = dict(os.environ, **(environment or {}))
         self.configure(settings)
         self.log = open(self.folder / "log", "w")

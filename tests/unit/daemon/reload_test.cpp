@@ -64,8 +64,7 @@ TEST(Reload, SomeSettingsNeedARestart) {
   wanted.state = "/other";
   wanted.socket = "/s";
   wanted.socket_mode = 0660;
-  wanted.web.port = 8080;
-  EXPECT_THAT(needing_restart(now, wanted), ElementsAre("state", "socket", "socket_mode", "[web]"));
+  EXPECT_THAT(needing_restart(now, wanted), ElementsAre("state", "socket", "socket_mode"));
 }
 
 }  // namespace

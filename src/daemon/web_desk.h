@@ -1,0 +1,46 @@
+// Questions of the web server's connections to the loop, and its answers as HTTP tells them.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "base/queue.h"
+#include "daemon/messages.h"
+#include "http/message.h"
+
+namespace packmerger {
+
+// To the loop, which answers as it answers the local socket (api.h).
+struct WebQuestion {
+  std::variant<std::string, UploadedJob> ask;  // a request as JSON text
+  std::promise<std::string> answer;
+};
+using WebQuestions = Queue<std::shared_ptr<WebQuestion>>;
+
+// Thread-safe.
+class WebDesk {
+ public:
+  explicit WebDesk(WebQuestions& questions) : questions_(questions) {}
+
+  // The loop's result as JSON with status 200, or its error with the status that suits it. Waits
+  // some seconds at most, then it is 503.
+  HttpReply ask(std::variant<std::string, UploadedJob> question) const;
+
+  // The one way in for files, whichever door they came through: a job for the printer, and status
+  // 201. 415 for what the name says is neither a model nor a program.
+  HttpReply take(UploadedJob upload) const;
+
+ private:
+  WebQuestions& questions_;
+};
+
+// What the loop's faults are in HTTP: 404, 409, 422 or 500.
+int http_status_of(int fault);
+
+// The answer to a file whose name says that it never becomes a job; nothing for others.
+std::optional<HttpReply> unwelcome(const std::string& given_name);
+
+}  // namespace packmerger
