@@ -100,6 +100,12 @@ class Includes(unittest.TestCase):
         self.assertEqual(len(users), 1, users)
         self.assertTrue(users[0].startswith("src/shape/"), users)
 
+    def test_wrapped_libraries_have_one_folder(self):
+        for pattern, owner in OWNERS.items():
+            users = {folder for path, folder in house_code() for included in includes(path) if re.fullmatch(pattern, included)}
+            if owner in FOLDERS:
+                self.assertEqual(users, {owner}, pattern)
+
     def test_only_offscreen_includes_osmesa(self):
         users = {folder for path, folder in house_code() for included in includes(path)
                  if re.match(r"GL/", included)}
