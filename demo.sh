@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The whole path in one command: a model dropped in a watched folder ends as a recorded print on a
 # simulated Replicator. Everything it makes lies in build/demo.
+#   ./demo.sh web   afterwards the daemon goes on, with its page for a browser, until Ctrl-C
 set -euo pipefail
 cd "$(dirname "$0")"
 source src/install/install.sh
@@ -11,7 +12,7 @@ install_packages
 install_npm_packages
 say "Building (some minutes the first time)"
 cmake --preset release >/dev/null
-cmake --build build --target packmerger packmergerd packmerger-tetgen | tail -n 1
+cmake --build build --target packmerger packmergerd packmerger-tetgen page | tail -n 1
 
 export PATH=$PWD/build/bin:$PATH
 demo=$PWD/build/demo
@@ -38,6 +39,9 @@ echo "It listens at $port and records what it executes in build/demo/printed.txt
 say "Starting the daemon with a watched folder"
 cat > "$demo/packmergerd.toml" <<EOF
 state = "state"
+
+[web]
+port = $([ "${1:-}" = web ] && echo 8310 || echo 0)
 
 [printer.replicator]
 profile = "replicator"
@@ -101,3 +105,10 @@ cat <<EOF
   print record  $demo/printed.txt
   your model    $(field filed)
 EOF
+if [ "${1:-}" = web ]; then
+  say "The page: http://localhost:8310"
+  echo "  Its key, for whatever changes something: $(packmerger keys add demo)"
+  echo "  Ctrl-C ends it."
+  trap "exit 0" INT
+  wait "$daemon"
+fi

@@ -205,6 +205,14 @@ toml::table parse(const fs::path& file) {
   }
 }
 
+// Where the page is built beside this program, or else where the package puts it.
+fs::path own_page() {
+  const fs::path above = program_folder().parent_path();
+  const fs::path built = above / "web";
+  std::error_code ignored;
+  return fs::exists(built / "index.html", ignored) ? built : above / "share/packmerger/web";
+}
+
 const toml::table* table_in(const fs::path& file, const toml::table& table, const char* name) {
   const toml::node* node = table.get(name);
   if (node == nullptr) return nullptr;
@@ -227,6 +235,7 @@ DaemonConfig read_config(const fs::path& file) {
   DaemonConfig config;
   config.state = default_state_folder();
   config.prepare.program = program_folder() / "packmerger";
+  config.web.page = own_page();
   TableReader top(file, &table, "", nullptr);
   read_top(top, file, config);
   const auto any = [](const toml::node&) { return true; };

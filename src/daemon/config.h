@@ -44,7 +44,7 @@ struct WebConfig {
   std::string address = "127.0.0.1";  // numeric
   std::vector<std::string> hosts;     // names by which browsers reach it
   std::uint64_t most_upload_bytes = std::uint64_t{1} << 30;
-  std::filesystem::path page;  // the built page's folder
+  std::filesystem::path page;  // the built page's folder; it may be missing
 
   bool operator==(const WebConfig&) const = default;
 };

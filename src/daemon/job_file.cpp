@@ -35,6 +35,12 @@ FileKind kind_of_file(std::string_view name) {
   return FileKind::kUnknown;
 }
 
+std::vector<std::string_view> job_file_endings() {
+  std::vector<std::string_view> endings;
+  for (const auto& [ending, kind] : kEndings) endings.push_back(ending);
+  return endings;
+}
+
 std::string job_file_name(std::string_view given) {
   std::string name(given.substr(given.find_last_of("/\\") + 1));
   for (char& c : name)

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/printer.h"
 
@@ -20,6 +21,9 @@ enum class FileKind {
 FileKind kind_of_file(std::string_view name);
 inline bool is_program(FileKind kind) { return kind == FileKind::kGcode || kind == FileKind::kX3g; }
 inline bool is_program(std::string_view name) { return is_program(kind_of_file(name)); }
+
+// The endings that have a kind, models first.
+std::vector<std::string_view> job_file_endings();
 
 // The last part of what somebody calls a file, as a plain name in a folder: never a way out of it,
 // not hidden, without control characters, at most 200 bytes. Throws Error{kBadInput} where nothing

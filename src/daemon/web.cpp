@@ -121,6 +121,8 @@ HttpReply Web::routed(HttpRequest& request) {
     }
     case WebTarget::kUpload:
       return upload(request);
+    case WebTarget::kRules:
+      return upload_rules();
     case WebTarget::kJobFile:
       return file_of_job(route.id, route.file);
     case WebTarget::kEvents:
@@ -146,6 +148,14 @@ HttpReply Web::upload(HttpRequest& request) {
                      .name = file.name,
                      .file = file.path,
                      .at_once = at_once != request.form.end() && at_once->second == "true"});
+}
+
+HttpReply Web::upload_rules() const {
+  HttpReply reply;
+  reply.body =
+      json{{"most_bytes", config_.most_upload_bytes}, {"endings", job_file_endings()}}.dump() +
+      "\n";
+  return reply;
 }
 
 HttpReply Web::file_of_job(const std::string& id, const std::string& name) {
@@ -180,6 +190,10 @@ HttpReply Web::page(const HttpRequest& request) const {
   HttpReply reply;
   reply.type = media_type(path);
   reply.file = config_.page / path.substr(1);
+  std::error_code ignored;
+  if (request.path == "/" && !fs::exists(reply.file, ignored))
+    return web_error(404, Fault::kNoInput, "This daemon was built without its page",
+                     "Build it with npm (docs/WEB.md), or use the interface for programs.");
   return reply;
 }
 

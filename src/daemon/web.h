@@ -36,6 +36,7 @@ class Web {
   HttpReply answer(HttpRequest& request);
   HttpReply routed(HttpRequest& request);
   HttpReply upload(HttpRequest& request);
+  HttpReply upload_rules() const;
   HttpReply file_of_job(const std::string& id, const std::string& name);
   HttpReply events();
   HttpReply page(const HttpRequest& request) const;

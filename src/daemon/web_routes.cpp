@@ -37,6 +37,7 @@ constexpr std::array kRows = {
     Row{"POST", "printers/{name}/answer", WebTarget::kVerb, Access::kChange, "printers.answer"},
     Row{"POST", "printers/{name}/stop", WebTarget::kVerb, Access::kChange, "printers.stop"},
     Row{"GET", "state", WebTarget::kVerb, Access::kRead, "state"},
+    Row{"GET", "uploads", WebTarget::kRules, Access::kRead, ""},
     Row{"GET", "events", WebTarget::kEvents, Access::kRead, ""},
 };
 

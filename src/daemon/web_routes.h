@@ -13,6 +13,7 @@ namespace packmerger {
 enum class WebTarget {
   kVerb,     // a verb of the local socket
   kUpload,   // a model for a printer
+  kRules,    // what an upload may be
   kJobFile,  // a file of a job's folder
   kEvents,   // server-sent events
   kDoor,     // what slicers ask: doors/doors.h

@@ -7,7 +7,7 @@ import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 CODE = {".h", ".cpp"}
-TEXT = CODE | {".py", ".js", ".ts", ".md", ".toml", ".txt", ".cmake", ".sh", ".json", ".html", ".css", ".service", ".rules"}
+TEXT = CODE | {".py", ".js", ".ts", ".md", ".toml", ".txt", ".cmake", ".sh", ".json", ".html", ".css", ".tsx", ".service", ".rules"}
 SKIPPED_FOLDERS = {"build", "node_modules", ".git", "__pycache__"}
 
 MAY_INCLUDE = {
@@ -131,7 +131,7 @@ class Includes(unittest.TestCase):
 class Files(unittest.TestCase):
     def test_lengths(self):
         lengths = {name_of(path): len(path.read_text(encoding="utf-8").splitlines())
-                   for path in files(*CODE, ".py", ".ts", ".js")}
+                   for path in files(*CODE, ".py", ".ts", ".tsx", ".js", ".css")}
         for name, lines in lengths.items():
             if lines > LONG_LINES:
                 print(f"long: {name} has {lines} lines, {LONG_LINES} are aimed at", file=sys.stderr)

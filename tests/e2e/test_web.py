@@ -51,6 +51,26 @@ class Use(Case):
         self.assertEqual(self.daemon.ask("DELETE", "/api/v1/jobs/1")[0], 405)
         self.assertEqual(self.daemon.ask("GET", "/api/v1/nothing")[0], 404)
 
+    def test_the_rules_of_uploads_are_told(self):
+        status, content, _ = self.daemon.ask("GET", "/api/v1/uploads", key=False)
+        rules = json.loads(content)
+        self.assertEqual((status, rules["most_bytes"]), (200, 1048576))
+        for ending in rules["endings"]:
+            status, content, _ = self.daemon.upload(name=b"a" + ending.encode(), content=STL)
+            self.assertEqual(status, 201, content)
+            self.daemon.ask("POST", f"/api/v1/jobs/{json.loads(content)['id']}/cancel")
+
+    def test_a_page_that_is_missing_is_told(self):
+        page = self.daemon.folder / "page/index.html"
+        text = page.read_bytes()
+        page.unlink()
+        try:
+            status, content, _ = self.daemon.ask("GET", "/", key=False)
+            self.assertEqual(status, 404)
+            self.assertIn("without its page", json.loads(content)["error"]["what"])
+        finally:
+            page.write_bytes(text)
+
     def test_pages_are_told_what_changes(self):
         connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=30)
         connection.request("GET", "/api/v1/events")

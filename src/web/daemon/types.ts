@@ -1,0 +1,123 @@
+// What the daemon tells (docs/DAEMON.md, docs/JOB_FOLDER.md). Unix times and durations in seconds.
+
+export type JobState =
+  | 'claiming' | 'received' | 'preparing' | 'ready' | 'approved' | 'sending'
+  | 'handed_over' | 'done' | 'failed' | 'cancelled';
+
+export type Waits =
+  | 'approval' | 'hold' | 'no_printer' | 'paused' | 'printer_busy' | 'clear_bed' | 'not_connected';
+
+export interface Heater {
+  name: string;
+  actual_c: number;
+  target_c: number | null;
+}
+
+export interface Print {
+  stage: string;
+  fraction: number;
+  done: number;
+  total: number;
+  text: string;
+  choices: string[];
+  heaters: Heater[];
+  elapsed_s: number;
+  remaining_s: number | null;
+}
+
+export interface Estimate {
+  fits: boolean;
+  time_s: number | null;
+  model_g: number | null;
+  support_g: number | null;
+  cost: number | null;
+  currency: string | null;
+  parts: number | null;
+  trays: number | null;
+  assembly_min: number | null;
+  source: 'model' | 'slicer' | null;
+}
+
+export type Way = 'as_is' | 'solid' | 'hollow' | 'packed';
+export type Estimates = Partial<Record<Way, Estimate>>;
+
+export interface JobEvent {
+  at_s: number;
+  state: JobState;
+  note: string;
+}
+
+export interface Job {
+  id: number;
+  printer: string;
+  name: string;
+  state: JobState;
+  held: boolean;
+  waits_for: Waits | null;
+  status: string;
+  progress: (Partial<Print> & { stage: string; fraction: number }) | null;
+  trays: number;
+  tray: number;
+  pays: boolean;
+  estimates: Estimates | null;
+  reason: string;
+  hint: string;
+  told: { done: number; total: number } | null;
+  folder: string;
+  again_of: number | null;
+  received_s: number | null;
+  sending_s: number | null;
+  ended_s: number | null;
+  history?: JobEvent[];
+}
+
+export interface Printer {
+  name: string;
+  profile: string;
+  folder: string;
+  port: string;
+  handoff_folder: string;
+  approve: 'auto' | 'ask';
+  simulated: boolean;
+  connected: boolean | null;
+  bed: 'clear' | 'not clear' | 'none';
+  paused: boolean;
+  job: number | null;
+  print: Print | null;
+}
+
+export interface State {
+  jobs: Job[];
+  printers: Printer[];
+}
+
+export interface UploadRules {
+  most_bytes: number;
+  endings: string[];
+}
+
+export type Vec3 = [number, number, number];
+
+export interface Part {
+  id: number;
+  model: number;
+  tray: number;
+  volume_mm3: number;
+  neighbours: { id: number; glue_area_mm2: number }[];
+}
+
+// job.json, as far as the page shows it.
+export interface Report {
+  inputs: { file: string; size_mm: Vec3 }[];
+  variant: string;
+  printer: { name: string; dialect: string; build_mm: Vec3 };
+  packing: { height_mm: number };
+  parts: Part[];
+  removal_order: number[];
+  removal_path?: Record<string, Vec3[]>;
+  resample_tolerance_mm?: number;
+  warnings: { code: string; text: string }[];
+}
+
+const ENDED: readonly JobState[] = ['done', 'handed_over', 'failed', 'cancelled'];
+export const hasEnded = (job: Job): boolean => ENDED.includes(job.state);

@@ -1,0 +1,45 @@
+// The job folder's files, to be kept. The page fetches them: a plain link could not send the key.
+import { jobFile } from '../daemon/api';
+import type { Job } from '../daemon/types';
+import { Button } from '../ui/bits';
+import { complain } from '../ui/notes';
+
+async function save(job: Job, file: string): Promise<void> {
+  try {
+    const url = URL.createObjectURL(await (await jobFile(job.id, file)).blob());
+    const link = document.createElement('a');
+    link.href = url;
+    link.download = `job-${job.id}-${file}`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(url), 60_000);
+  } catch (error) {
+    complain(error);
+  }
+}
+
+const PROGRAMS: Record<string, string> = { gcode: 'gcode', s3g: 'x3g' };
+
+export function filesOf(job: Job, dialect: string): { file: string; title: string }[] {
+  const files: { file: string; title: string }[] = [];
+  for (let tray = 1; tray <= job.trays; tray += 1) {
+    const number = tray === 1 ? '' : `-${tray}`;
+    const which = job.trays > 1 ? ` ${tray}` : '';
+    files.push({ file: `tray${number}.3mf`, title: `Tray${which}, 3MF` }, { file: `tray${number}.stl`, title: `Tray${which}, STL` });
+    const program = PROGRAMS[dialect];
+    if (program) files.push({ file: `program${number}.${program}`, title: `Program${which}, ${program}` });
+  }
+  return [...files, { file: 'preview.png', title: 'Picture' }, { file: 'job.json', title: 'Report, JSON' }];
+}
+
+export function Files({ job, dialect }: { job: Job; dialect: string }) {
+  return (
+    <section class="card" aria-labelledby="files-title">
+      <h2 id="files-title">Files</h2>
+      <div class="buttons">
+        {filesOf(job, dialect).map(({ file, title }) => (
+          <Button key={file} icon="download" onClick={() => void save(job, file)}>{title}</Button>
+        ))}
+      </div>
+    </section>
+  );
+}

@@ -1,0 +1,107 @@
+// One job: how it stands, what it looks like, what it takes, what happened.
+import { useEffect, useState } from 'preact/hooks';
+import { JobButtons } from './actions';
+import { Files } from './files';
+import { cheaperWay, EstimateTable } from './table';
+import { Timeline } from './timeline';
+import { Views } from './views';
+import { jobReport, Refusal, showJob } from '../daemon/api';
+import type { Job, Report } from '../daemon/types';
+import { jobHref } from '../route';
+import type { Known } from '../store';
+import { Badge, Bar, Empty } from '../ui/bits';
+import { Icon } from '../ui/icons';
+import { complain } from '../ui/notes';
+import { duration, jobBadge, nextStep, progressText, when } from '../words';
+
+// The job as the stream tells it, with the history that only a question brings.
+function useJob(id: number, known: Known): Job | Refusal | null {
+  const live = known.jobs?.find((job) => job.id === id);
+  const [asked, setAsked] = useState<Job | Refusal | null>(null);
+  useEffect(() => {
+    showJob(id).then(setAsked, (error: unknown) => (error instanceof Refusal ? setAsked(error) : complain(error)));
+  }, [id, live?.state, live?.held, live?.tray, live?.reason]);
+  if (live === undefined) return asked;
+  const history = asked === null || asked instanceof Refusal ? undefined : asked.history;
+  return history === undefined ? live : { ...live, history };
+}
+
+// null: none yet; a job that holds only a program has none at all.
+function useReport(job: Job | null): Report | null {
+  const [report, setReport] = useState<Report | null>(null);
+  const folder = job?.folder ?? '';
+  useEffect(() => {
+    setReport(null);
+    if (job && folder !== '') jobReport(job.id).then(setReport, () => undefined);
+  }, [folder]);
+  return report;
+}
+
+export function JobPage({ id, known }: { id: number; known: Known }) {
+  const found = useJob(id, known);
+  const job = found instanceof Refusal ? null : found;
+  const report = useReport(job);
+  if (found instanceof Refusal)
+    return <Empty title={found.what}>{found.hint} <a href="#/">Back to the queue</a></Empty>;
+  if (job === null) return <p class="loading" role="status">Asking for job {id}…</p>;
+  return (
+    <article class="job">
+      <a class="back" href="#/"><Icon name="back" />Printers and queue</a>
+      <Head job={job} report={report} />
+      {report && report.warnings.length > 0 ? <Warnings report={report} /> : null}
+      {report && report.parts.length > 0 ? <Views job={job} report={report} /> : null}
+      {job.estimates ? (
+        <section class="card" aria-labelledby="table-title">
+          <h2 id="table-title">What it takes</h2>
+          <EstimateTable estimates={job.estimates} prepared={report?.variant ?? ''} />
+        </section>
+      ) : null}
+      {job.folder !== '' ? <Files job={job} dialect={report?.printer.dialect ?? ''} /> : null}
+      <Timeline job={job} />
+    </article>
+  );
+}
+
+function Head({ job, report }: { job: Job; report: Report | null }) {
+  const size = report?.inputs[0]?.size_mm.map((mm) => Math.round(mm)).join(' × ');
+  const next = nextStep(job);
+  const cheaper = job.state === 'ready' ? cheaperWay(job.estimates, report?.variant ?? '') : '';
+  return (
+    <section class={`card job-head ${jobBadge(job).tone}`} aria-labelledby="job-title">
+      <div class="card-head">
+        <h1 id="job-title">{job.name}</h1>
+        <Badge badge={jobBadge(job)} />
+      </div>
+      <p class="quiet-text">
+        Job {job.id} on {job.printer}{size ? ` · ${size} mm` : ''}{job.received_s ? ` · came ${when(job.received_s)}` : ''}
+        {job.again_of ? <> · again of <a href={jobHref(job.again_of)}>job {job.again_of}</a></> : null}
+      </p>
+      {job.progress ? <Progress job={job} /> : null}
+      {job.reason ? <p class="reason"><strong>{job.reason}</strong> {job.hint}</p> : null}
+      {next ? <p>{next}</p> : null}
+      {cheaper ? <p>It would cost less printed {cheaper}; the table below shows by how much.</p> : null}
+      {job.state === 'handed_over' ? <p>Open it in the printer’s own software.</p> : null}
+      {job.sending_s && job.ended_s ? <p class="quiet-text">It took {duration(job.ended_s - job.sending_s)} to print.</p> : null}
+      <JobButtons job={job} />
+    </section>
+  );
+}
+
+function Progress({ job }: { job: Job }) {
+  if (job.progress === null) return null;
+  return (
+    <div class="printing">
+      <Bar fraction={job.progress.fraction} label={`How far: ${job.progress.stage}`} tone={jobBadge(job).tone} />
+      <p class="quiet-text figure">{progressText(job)}</p>
+    </div>
+  );
+}
+
+function Warnings({ report }: { report: Report }) {
+  return (
+    <section class="card warnings" aria-labelledby="warnings-title">
+      <h2 id="warnings-title"><Icon name="warning" />What you should know</h2>
+      <ul>{report.warnings.map((warning, index) => <li key={index}>{warning.text}</li>)}</ul>
+    </section>
+  );
+}

@@ -1,0 +1,38 @@
+// A job that has not ended, as a row of the queue.
+import type { Job } from '../daemon/types';
+import { JobButtons } from '../job/actions';
+import { Preview } from '../job/preview';
+import { jobHref } from '../route';
+import { Badge, Bar } from '../ui/bits';
+import { difference, duration, jobBadge, money, nextStep, progressText } from '../words';
+
+export function QueueRow({ job }: { job: Job }) {
+  const next = nextStep(job);
+  return (
+    <li class={`card row ${jobBadge(job).tone}`} data-job={job.id}>
+      <a class="thumb" href={jobHref(job.id)} tabIndex={-1} aria-hidden="true"><Preview job={job} /></a>
+      <div class="row-words">
+        <div class="card-head">
+          <h3><a href={jobHref(job.id)}>{job.name}</a></h3>
+          <Badge badge={jobBadge(job)} />
+        </div>
+        <p class="quiet-text">Job {job.id} on {job.printer}{gain(job)}</p>
+        {job.progress
+          ? <><Bar fraction={job.progress.fraction} label={`Job ${job.id}: ${job.progress.stage}`} tone={jobBadge(job).tone} />
+              <p class="quiet-text figure">{progressText(job)}</p></>
+          : <p>{job.reason ? `${job.reason}. ` : ''}{next || sentence(job.status)}</p>}
+        <JobButtons job={job} />
+      </div>
+    </li>
+  );
+}
+
+const sentence = (text: string): string => (text === '' ? '' : `${text[0]?.toUpperCase()}${text.slice(1)}.`);
+
+function gain(job: Job): string {
+  const packed = job.estimates?.packed;
+  if (!packed?.fits || packed.time_s === null) return '';
+  const solid = job.estimates?.solid;
+  const change = solid?.fits ? difference(packed.time_s, solid.time_s) : '';
+  return ` · ${duration(packed.time_s)}${change ? ` (${change})` : ''}${packed.cost === null ? '' : ` · ${money(packed.cost, packed.currency)}`}`;
+}

@@ -1,0 +1,37 @@
+import { expect, test } from 'vitest';
+import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent } from '../../src/web/words';
+import type { Job } from '../../src/web/daemon/types';
+
+const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
+
+test('durations are short and never round to 60', () => {
+  expect([0, 59.4, 59.6, 3569, 3599, 3600, 5 * 3600 + 300, 47.9 * 3600, 49 * 3600].map((s) => plain(duration(s)))).toEqual(
+    ['0 s', '59 s', '1 min', '59 min', '1 h 00 min', '1 h 00 min', '5 h 05 min', '47 h 54 min', '2 d 1 h']);
+  expect(plain(duration(-3))).toBe('0 s');
+});
+
+test('a print is at 100 % only when it is', () => {
+  expect([0, 0.999, 1, 1.2, -1].map((f) => plain(percent(f)))).toEqual(['0 %', '99 %', '100 %', '100 %', '0 %']);
+});
+
+test('differences carry their sign and are silent where nothing can be compared', () => {
+  expect([[62, 141], [30, 22], [22, 22], [1, 0], [null, 3], [3, null]].map(([a, b]) => plain(difference(a, b)))).toEqual(
+    ['−56 %', '+36 %', '±0 %', '', '', '']);
+});
+
+test('figures', () => {
+  expect([0, 1023, 1536, 1 << 30].map((n) => plain(bytes(n)))).toEqual(['0 bytes', '1,023 bytes', '1.5 KiB', '1 GiB']);
+  expect([4.21, 62.3, 1410].map((g) => plain(grams(g)))).toEqual(['4.2 g', '62 g', '1.41 kg']);
+  expect(money(9.7, 'EUR')).toBe('€9.70');
+  expect(money(9.7, 'no currency')).toBe('9.70');
+  expect([count(1, 'job'), count(0, 'job')]).toEqual(['1 job', '0 jobs']);
+  expect(['tool', 'tool 1', 'bed', 'lid'].map(heaterName)).toEqual(['Nozzle', 'Nozzle 1', 'Bed', 'lid']);
+});
+
+test('a held job says so before anything else, and a printing one how it prints', () => {
+  const job = { state: 'ready', held: false, waits_for: null, progress: null } as unknown as Job;
+  expect(jobBadge(job).text).toBe('Ready to approve');
+  expect(jobBadge({ ...job, held: true }).text).toBe('Held');
+  expect(jobBadge({ ...job, state: 'sending', progress: { stage: 'waiting', fraction: 0 } }).text).toBe('Asks you');
+  expect(jobBadge({ ...job, state: 'approved', waits_for: 'clear_bed' }).tone).toBe('attention');
+});
