@@ -1,4 +1,4 @@
-// What the ways of printing take, each against the solid model.
+// What the ways of printing take, each against the cheapest that is not packed, as `packmerger compare` has it.
 import type { Estimate, Estimates, Way } from '../daemon/types';
 import { difference, duration, grams, money } from '../words';
 
@@ -21,7 +21,7 @@ const ROWS: readonly Row[] = [
   { title: 'Cost', value: (one) => one.cost, text: (value, one) => money(value, one.currency), compared: true },
   { title: 'Parts', value: (one) => one.parts, text: String, compared: false },
   { title: 'Trays', value: (one) => one.trays, text: String, compared: false },
-  { title: 'Work by hand', value: (one) => one.assembly_min, text: (value) => duration(60 * value), compared: false },
+  { title: 'Work by hand', value: (one) => one.assembly_min, text: (value) => (value === 0 ? 'none' : duration(60 * value)), compared: false },
 ];
 
 function Cell({ row, one, base, best, kind }:
@@ -49,13 +49,14 @@ export function cheaperWay(estimates: Estimates | null, prepared: string): strin
 export function EstimateTable({ estimates, prepared }: { estimates: Estimates; prepared: string }) {
   const ways = WAYS.filter(({ way }) => estimates[way] !== undefined);
   const fitting = (way: Way): Estimate | undefined => (estimates[way]?.fits ? estimates[way] : undefined);
-  const base = fitting('solid') ?? fitting('as_is') ?? fitting('hollow');
+  const base = (['as_is', 'solid', 'hollow'] as const).map(fitting)
+    .reduce((best, one) => (one && (!best || (one.cost ?? 0) < (best.cost ?? 0)) ? one : best), undefined);
   const baseTitle = WAYS.find(({ way }) => estimates[way] === base)?.title ?? '';
   const sliced = Object.values(estimates).some((one) => one.source === 'slicer');
   return (
     <table class="estimates">
       <caption class="quiet-text">
-        {sliced ? 'Figures of the slicer' : 'Estimates'}{baseTitle ? `; differences are against “${baseTitle}”` : ''}.
+        {sliced ? 'Figures of the slicer' : 'Estimates'}{baseTitle ? `; differences are against “${baseTitle}”, the cheapest way that is not packed` : ''}.
       </caption>
       <thead>
         <tr>

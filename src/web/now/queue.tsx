@@ -4,7 +4,7 @@ import { JobButtons } from '../job/actions';
 import { Preview } from '../job/preview';
 import { jobHref } from '../route';
 import { Badge, Bar } from '../ui/bits';
-import { difference, duration, jobBadge, money, nextStep, progressText } from '../words';
+import { duration, jobBadge, money, nextStep, progressText } from '../words';
 
 export function QueueRow({ job }: { job: Job }) {
   const next = nextStep(job);
@@ -16,7 +16,7 @@ export function QueueRow({ job }: { job: Job }) {
           <h3><a href={jobHref(job.id)}>{job.name}</a></h3>
           <Badge badge={jobBadge(job)} />
         </div>
-        <p class="quiet-text">Job {job.id} on {job.printer}{gain(job)}</p>
+        <p class="quiet-text">Job {job.id} on {job.printer}{figures(job)}</p>
         {job.progress
           ? <><Bar fraction={job.progress.fraction} label={`Job ${job.id}: ${job.progress.stage}`} tone={jobBadge(job).tone} />
               <p class="quiet-text figure">{progressText(job)}</p></>
@@ -29,10 +29,9 @@ export function QueueRow({ job }: { job: Job }) {
 
 const sentence = (text: string): string => (text === '' ? '' : `${text[0]?.toUpperCase()}${text.slice(1)}.`);
 
-function gain(job: Job): string {
+// What printing it takes.
+function figures(job: Job): string {
   const packed = job.estimates?.packed;
   if (!packed?.fits || packed.time_s === null) return '';
-  const solid = job.estimates?.solid;
-  const change = solid?.fits ? difference(packed.time_s, solid.time_s) : '';
-  return ` · ${duration(packed.time_s)}${change ? ` (${change})` : ''}${packed.cost === null ? '' : ` · ${money(packed.cost, packed.currency)}`}`;
+  return ` · ${duration(packed.time_s)}${packed.cost === null ? '' : ` · ${money(packed.cost, packed.currency)}`}`;
 }

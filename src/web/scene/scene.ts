@@ -15,15 +15,23 @@ const CLICK_PX = 5;
 const SETTLE_S = 0.11;  // in which a move does about two thirds of what is left
 const LIFT = 1.4;    // of the tray's height
 const MARGIN = 1.12;
+const SURROUNDINGS = 0.45;  // of the plate around the parts
 
 const NOT_SET = 1e-4;  // the camera's near plane before it looks at anything
 
 const isCalm = (): boolean => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-// The plates' ground, so that it is seen how much of them is used.
+// The plates' ground.
 function footprint(report: Report): Box3 {
   const [width, depth] = report.printer.build_mm;
   return new Box3().setFromPoints([inScene([0, 0, 0]), inScene([width, depth, 0])]);
+}
+
+// Part of the way to what is around it, so that it is seen how much of the plate is used.
+function widen(box: Box3, around: Box3): void {
+  const { min, max } = box.clone().union(around);
+  box.min.lerp(min, SURROUNDINGS);
+  box.max.lerp(max, SURROUNDINGS);
 }
 
 export class Scene {
@@ -56,7 +64,7 @@ export class Scene {
     this.controls.enableDamping = false;
     this.controls.enableZoom = false;
     canvas.style.touchAction = 'pan-y';  // a finger that goes up or down scrolls the page
-    if (report) box.union(footprint(report));
+    if (report) widen(box, footprint(report));
     this.listen();
     this.sizes = new ResizeObserver(() => this.resize(box));
     this.sizes.observe(canvas);

@@ -7,11 +7,12 @@ import { join } from 'node:path';
 import { SCREENSHOTS } from './workshop.mjs';
 
 export const WIDTHS = { wide: { width: 1280, height: 860 }, narrow: { width: 360, height: 740 } };
+const PATIENCE_MS = 20_000;
 const CHROMIUM = '/usr/bin/chromium';
 // what Chromium itself says of a refused request; every test that causes one also asserts it
 const HARMLESS = /^Failed to load resource: (the server responded with a status of|net::ERR_)/;
 
-export const missing = existsSync(CHROMIUM) ? '' : 'chromium is not installed';
+export const missing = existsSync(CHROMIUM) ? false : 'chromium is not installed';
 
 export class Browser {
   visits = [];
@@ -27,6 +28,7 @@ export class Browser {
   async visit(base, { view = '#/', key = '', width = 'wide', theme = 'light', calm = true } = {}) {
     const context = await this.chromium.newContext({
       viewport: WIDTHS[width], colorScheme: theme, reducedMotion: calm ? 'reduce' : 'no-preference', acceptDownloads: true });
+    context.setDefaultTimeout(PATIENCE_MS);
     const page = await context.newPage();
     const wrong = [];
     const host = new URL(base).host;
