@@ -155,10 +155,11 @@ describe('the page', { skip: missing }, () => {
     await page.keyboard.press('Enter');
     await page.getByRole('dialog').waitFor();
     await page.keyboard.press('Escape');
-    await page.getByRole('dialog').waitFor({ state: 'detached' });
+    await page.locator('dialog').waitFor({ state: 'detached' });
     assert.match(await page.evaluate(() => document.activeElement.getAttribute('aria-label')), /^Cancel job/, 'the focus returns');
     assert.equal((await shop.job(job.id)).state, 'preparing', 'Escape cancels nothing');
     await page.keyboard.press('Enter');
+    await page.getByRole('dialog').waitFor();
     await page.keyboard.press('Tab');
     await page.keyboard.press('Enter');
     await until('it is cancelled', async () => (await shop.job(job.id)).state === 'cancelled');
