@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "daemon/doors/door.h"
 #include "daemon/doors/doors.h"
+#include "daemon/job_file.h"
 #include "daemon/web_routes.h"
 
 namespace packmerger {
