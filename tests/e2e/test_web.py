@@ -58,7 +58,7 @@ class Use(Case):
         for ending in rules["endings"]:
             status, content, _ = self.daemon.upload(name=b"a" + ending.encode(), content=STL)
             if ending in (".gcode", ".gco", ".g", ".x3g", ".s3g"):
-                self.assertEqual(status, 415, content)  # this printer is handed documents
+                self.assertEqual(status, 422, content)  # this printer is handed documents
             else:
                 self.assertEqual(status, 201, content)
                 self.daemon.ask("POST", f"/api/v1/jobs/{json.loads(content)['id']}/cancel")
