@@ -160,7 +160,9 @@ SolidGrid solid_grid(const PackProblem& problem, double cell_mm, bool bounds) {
 
 std::optional<Packing> rearranged(const PackProblem& problem, Packing packing, double finest_mm,
                                   PartMaker& maker, Pace& pace) {
-  const int ratio = std::max(1, static_cast<int>(std::lround(problem.grid_mm / finest_mm)));
+  const int ratio = std::max(
+      1,
+      static_cast<int>(std::lround(std::max(problem.grid_mm, problem.search_grid_mm) / finest_mm)));
   const SolidGrid coarse = solid_grid(problem, finest_mm * ratio, false);
   const SolidGrid fine = solid_grid(problem, finest_mm, true);
   std::vector<const Part*> parts;
