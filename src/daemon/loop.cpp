@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -36,7 +35,8 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Held while the process lives; the kernel lets go of it however the process ends.
+// Held while the process lives; the kernel lets go of it however the process ends. A record lock:
+// unlike flock's it is not kept by a child that was being started when the daemon was killed.
 class StateLock {
  public:
   explicit StateLock(const fs::path& state) {
@@ -45,7 +45,10 @@ class StateLock {
     if (fd_ < 0)
       throw Error(Fault::kCannotWrite, "Cannot write " + file.string(),
                   "Give the daemon's user the right to write to its state folder.");
-    if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+    struct flock whole {};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    if (::fcntl(fd_, F_SETLK, &whole) == 0) return;
     ::close(fd_);
     throw Error(Fault::kBusy, "Another packmergerd works in " + state.string(),
                 "End it first, or give this one another state folder.");
