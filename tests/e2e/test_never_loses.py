@@ -1,0 +1,107 @@
+#!/usr/bin/python3
+"""Nothing is lost and nothing printed twice: the daemon is killed at random moments, its disk fills and breaks, clocks jump.
+PACKMERGER_KILLS and PACKMERGER_DISK_FAULTS make the series longer, PACKMERGER_SEED another."""
+import errno
+import os
+import pathlib
+import random
+import statistics
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import program
+from workshop import Workshop, gcode
+
+KILLS = int(os.environ.get("PACKMERGER_KILLS", 50))
+DISK_FAULTS = int(os.environ.get("PACKMERGER_DISK_FAULTS", 25))
+SEED = int(os.environ.get("PACKMERGER_SEED", 1))
+READY_S = 2  # after a kill; a test allows tenfold
+FAILING_DISK = program.binary("libfailing_disk.so")
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="packmerger-safe-")
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+        self.random = random.Random(SEED)
+        print(f"seed {SEED}", file=sys.stderr)
+
+
+class Kills(Case):
+    def test_killed_at_random_moments(self):
+        shop = Workshop(self, self.folder, speed=300)
+        dropped, ready_s = {}, []
+        for number in range(KILLS):
+            ready_s.append(shop.start())
+            self.assertIsNotNone(ready_s[-1], shop.log())
+            for i in range(self.random.randrange(3)):
+                name = f"k{number}-{i}.gcode"
+                dropped[name] = gcode(name, moves=self.random.randrange(1, 200))
+                shop.drop(self.random.choice(shop.printers), name, dropped[name])
+            time.sleep(self.random.random() ** 2)
+            shop.kill()
+        shop.start()
+        shop.wait_until_all_ended(len(dropped))
+        jobs = shop.check(dropped)
+        self.assertEqual(shop.left_in_inboxes(), [])
+        states = [job["state"] for job in jobs.values()]
+        self.assertIn("done", states)
+        for job in jobs.values():
+            if job["state"] == "failed":
+                self.assertIn("interrupted", job["reason"])
+        self.assertLess(max(ready_s), 10 * READY_S)
+        print(f"{KILLS} kills, {len(dropped)} drops, {states.count('failed')} interrupted, ready again after "
+              f"{statistics.median(ready_s):.2f} s (at most {max(ready_s):.2f} s)", file=sys.stderr)
+        self.assertEqual(shop.end(), 0)
+
+
+class Disk(Case):
+    """Calls FIRST to FIRST + COUNT - 1 fail, as they do on a disk that is full or breaks, then it is mended."""
+
+    def shop(self, number):
+        folder = self.folder / str(number)
+        folder.mkdir()
+        when, told = folder / "when", folder / "told"
+        environment = {"LD_PRELOAD": FAILING_DISK, "FAILING_DISK": str(folder / "state"),
+                       "FAILING_DISK_WHEN": str(when), "FAILING_DISK_TOLD": str(told)}
+        return Workshop(self, folder, printers=1, environment=environment), when, told
+
+    def broken(self, number, first, count, cause):
+        shop, when, told = self.shop(number)
+        when.write_text(f"{first} {count} {cause}")
+        dropped = {f"{number}-{i}.gcode": gcode(f"{number}-{i}.gcode") for i in range(2)}
+        started = shop.start()
+        for name, text in dropped.items():
+            shop.drop("m0", name, text)
+        end = time.monotonic() + 3
+        while started and time.monotonic() < end and not (told.exists() and told.stat().st_size >= min(count, 3)):
+            time.sleep(0.05)
+        when.unlink()
+        if shop.daemon.poll() is not None:
+            self.assertGreater(shop.daemon.returncode, 0, f"it crashed at call {first}: {shop.log()}")
+            self.assertIn("error", shop.log())
+            self.assertIsNotNone(shop.start(), shop.log())
+        shop.wait_until_all_ended(len(dropped))
+        shop.check(dropped)
+        self.assertEqual(shop.end(), 0)
+        return told.exists()
+
+    def test_calls_that_fail(self):
+        struck = 0
+        for number in range(DISK_FAULTS):
+            first = self.random.randrange(1, 150) if number % 5 else number // 5 + 1
+            count = self.random.choice([1, 1, 3, 1000000])
+            cause = self.random.choice([errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EROFS])
+            with self.subTest(first=first, count=count, cause=errno.errorcode[cause]):
+                struck += self.broken(number, first, count, cause)
+        self.assertGreater(struck, DISK_FAULTS / 2, "most faults must have struck")
+        print(f"{struck} of {DISK_FAULTS} faults struck", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
