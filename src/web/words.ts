@@ -98,6 +98,7 @@ export function jobBadge(job: Job): Badge {
 export function printerBadge(printer: Printer): Badge {
   if (printer.print) return STAGE_BADGES[printer.print.stage] ?? JOB_BADGES.sending;
   if (printer.job !== null) return { tone: 'busy', text: 'Handing over' };
+  if (printer.prefer !== null) return { tone: 'calm', text: 'Chooses' };
   if (printer.paused) return { tone: 'attention', text: 'Paused' };
   if (printer.connected === false) return { tone: 'bad', text: 'Not connected' };
   if (printer.bed === 'not clear') return { tone: 'attention', text: 'Bed not clear' };

@@ -1,9 +1,9 @@
 import { expect, test } from 'vitest';
 import { modelLooks, ordinal, stepInWords, trayLooks, wayOut } from '../../src/web/job/looks';
-import type { Report } from '../../src/web/daemon/types';
+import type { PackedReport } from '../../src/web/daemon/types';
 
 const ORDER = [3, 1, 2];
-const report = { removal_order: ORDER, removal_path: { 1: [[12.4, 0, 0], [0, -3, 0.1]], 2: [[0, 0, 0.2]] } } as unknown as Report;
+const report = { removal_order: ORDER, removal_path: { 1: [[12.4, 0, 0], [0, -3, 0.1]], 2: [[0, 0, 0.2]] } } as unknown as PackedReport;
 const list = (looks: Map<number, string>): string => [1, 2, 3].map((id) => looks.get(id)).join(' ');
 
 test('the tray shows what is still on it, and what is chosen', () => {

@@ -35,11 +35,26 @@ export interface Estimate {
   parts: number | null;
   trays: number | null;
   assembly_min: number | null;
-  source: 'model' | 'slicer' | null;
+  source: 'model' | 'slicer' | 'program' | 'moves' | null;
 }
 
 export type Way = 'as_is' | 'solid' | 'hollow' | 'packed';
 export type Estimates = Partial<Record<Way, Estimate>>;
+
+// How the printers were compared for a model that named none.
+export interface Choice {
+  prefer: 'cheapest' | 'soonest';
+  chosen: string;
+  printers: {
+    printer: string;
+    fits: boolean;
+    time_s: number | null;
+    cost: number | null;
+    currency: string | null;
+    ready_in_s: number | null;
+    reason: string;
+  }[];
+}
 
 export interface JobEvent {
   at_s: number;
@@ -64,6 +79,12 @@ export interface Job {
   hint: string;
   told: { done: number; total: number } | null;
   folder: string;
+  kind: 'model' | 'program';
+  chosen_by: string | null;
+  choice: Choice | null;
+  same_as: number | null;
+  predicted_s: number | null;
+  printed_s: number | null;
   again_of: number | null;
   received_s: number | null;
   sending_s: number | null;
@@ -77,6 +98,7 @@ export interface Printer {
   folder: string;
   port: string;
   handoff_folder: string;
+  prefer: 'cheapest' | 'soonest' | null;  // not null: it stands for all others, and proposes one
   approve: 'auto' | 'ask';
   simulated: boolean;
   connected: boolean | null;
@@ -106,18 +128,22 @@ export interface Part {
   neighbours: { id: number; glue_area_mm2: number }[];
 }
 
-// job.json, as far as the page shows it.
+// job.json, as far as the page shows it. A program that somebody else made has no size and no parts.
 export interface Report {
-  inputs: { file: string; size_mm: Vec3 }[];
+  inputs: { file: string; size_mm?: Vec3 }[];
   variant: string;
   printer: { name: string; dialect: string; build_mm: Vec3 };
-  packing: { height_mm: number };
-  parts: Part[];
-  removal_order: number[];
+  parts?: Part[];
+  removal_order?: number[];
   removal_path?: Record<string, Vec3[]>;
   resample_tolerance_mm?: number;
   warnings: { code: string; text: string }[];
 }
+
+// A job that can be taken apart in 3D.
+export type PackedReport = Report & { parts: Part[]; removal_order: number[] };
+export const isPacked = (report: Report): report is PackedReport =>
+  (report.parts?.length ?? 0) > 0 && report.removal_order !== undefined;
 
 const ENDED: readonly JobState[] = ['done', 'handed_over', 'failed', 'cancelled'];
 export const hasEnded = (job: Job): boolean => ENDED.includes(job.state);

@@ -15,7 +15,11 @@ export function forbids(file: { name: string; size: number }, rules: UploadRules
   return null;
 }
 
+const SHORT_FORMS = ['.gco', '.g', '.s3g'];  // of what is named already
+const NAMES: Record<string, string> = { '.gcode': 'G-code', '.x3g': 'x3g' };
+
 export function endingsInWords(rules: UploadRules | null): string {
-  const names = (rules?.endings ?? ['.stl', '.obj', '.ply', '.off', '.3mf']).map((one) => one.slice(1).toUpperCase());
+  const endings = (rules?.endings ?? ['.stl', '.obj', '.ply', '.off', '.3mf']).filter((one) => !SHORT_FORMS.includes(one));
+  const names = endings.map((one) => NAMES[one] ?? one.slice(1).toUpperCase());
   return `${names.slice(0, -1).join(', ')} or ${names.at(-1)}`;
 }

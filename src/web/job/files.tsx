@@ -24,11 +24,13 @@ export function filesOf(job: Job, dialect: string): { file: string; title: strin
   for (let tray = 1; tray <= job.trays; tray += 1) {
     const number = tray === 1 ? '' : `-${tray}`;
     const which = job.trays > 1 ? ` ${tray}` : '';
-    files.push({ file: `tray${number}.3mf`, title: `Tray${which}, 3MF` }, { file: `tray${number}.stl`, title: `Tray${which}, STL` });
+    if (job.kind !== 'program')
+      files.push({ file: `tray${number}.3mf`, title: `Tray${which}, 3MF` }, { file: `tray${number}.stl`, title: `Tray${which}, STL` });
     const program = PROGRAMS[dialect];
     if (program) files.push({ file: `program${number}.${program}`, title: `Program${which}, ${program}` });
   }
-  return [...files, { file: 'preview.png', title: 'Picture' }, { file: 'job.json', title: 'Report, JSON' }];
+  if (job.kind !== 'program') files.push({ file: 'preview.png', title: 'Picture' });
+  return [...files, { file: 'job.json', title: 'Report, JSON' }];
 }
 
 export function Files({ job, dialect }: { job: Job; dialect: string }) {

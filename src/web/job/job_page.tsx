@@ -1,12 +1,13 @@
 // One job: how it stands, what it looks like, what it takes, what happened.
 import { useEffect, useState } from 'preact/hooks';
 import { JobButtons } from './actions';
+import { ChoiceTable } from './choice';
 import { Files } from './files';
 import { cheaperWay, EstimateTable } from './table';
 import { Timeline } from './timeline';
 import { Views } from './views';
 import { jobReport, Refusal, showJob } from '../daemon/api';
-import type { Job, Report } from '../daemon/types';
+import { isPacked, type Estimates, type Job, type Report } from '../daemon/types';
 import { jobHref } from '../route';
 import type { Known } from '../store';
 import { Badge, Bar, Empty } from '../ui/bits';
@@ -49,21 +50,25 @@ export function JobPage({ id, known }: { id: number; known: Known }) {
       <a class="back" href="#/"><Icon name="back" />Printers and queue</a>
       <Head job={job} report={report} />
       {report && report.warnings.length > 0 ? <Warnings report={report} /> : null}
-      {report && report.parts.length > 0 ? <Views job={job} report={report} /> : null}
+      {report && isPacked(report) ? <Views job={job} report={report} /> : null}
       {job.estimates ? (
         <section class="card" aria-labelledby="table-title">
           <h2 id="table-title">What it takes</h2>
-          <EstimateTable estimates={job.estimates} prepared={report?.variant ?? ''} />
+          <EstimateTable estimates={job.kind === 'program' ? own(job.estimates) : job.estimates} prepared={report?.variant ?? ''} />
         </section>
       ) : null}
+      {job.choice ? <ChoiceTable choice={job.choice} /> : null}
       {job.folder !== '' ? <Files job={job} dialect={report?.printer.dialect ?? ''} /> : null}
       <Timeline job={job} />
     </article>
   );
 }
 
+// Of a program there is only what it says of itself.
+const own = ({ as_is }: Estimates): Estimates => (as_is ? { as_is } : {});
+
 function Head({ job, report }: { job: Job; report: Report | null }) {
-  const size = report?.inputs[0]?.size_mm.map((mm) => Math.round(mm)).join(' × ');
+  const size = report?.inputs[0]?.size_mm?.map((mm) => Math.round(mm)).join(' × ');
   const next = nextStep(job);
   const cheaper = job.state === 'ready' ? cheaperWay(job.estimates, report?.variant ?? '') : '';
   return (
@@ -74,6 +79,9 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
       </div>
       <p class="quiet-text">
         Job {job.id} on {job.printer}{size ? ` · ${size} mm` : ''}{job.received_s ? ` · came ${when(job.received_s)}` : ''}
+        {job.kind === 'program' ? ' · a program, printed as it is' : ''}
+        {job.chosen_by ? ` · proposed by ${job.chosen_by}` : ''}
+        {job.same_as ? <> · the same file as <a href={jobHref(job.same_as)}>job {job.same_as}</a></> : null}
         {job.again_of ? <> · again of <a href={jobHref(job.again_of)}>job {job.again_of}</a></> : null}
       </p>
       {job.progress ? <Progress job={job} /> : null}
@@ -81,7 +89,7 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
       {next ? <p>{next}</p> : null}
       {cheaper ? <p>It would cost less printed {cheaper}; the table below shows by how much.</p> : null}
       {job.state === 'handed_over' ? <p>Open it in the printer’s own software.</p> : null}
-      {job.sending_s && job.ended_s ? <p class="quiet-text">It took {duration(job.ended_s - job.sending_s)} to print.</p> : null}
+      {job.printed_s ? <p class="quiet-text">It took {duration(job.printed_s)} to print{job.predicted_s ? `, ${duration(job.predicted_s)} were predicted` : ''}.</p> : null}
       <JobButtons job={job} />
     </section>
   );

@@ -1,5 +1,5 @@
 // How each part is drawn in the two scenes, from what is chosen and how far the tray is emptied.
-import type { Report, Vec3 } from '../daemon/types';
+import type { PackedReport, Vec3 } from '../daemon/types';
 
 // gone: taken off the tray; ghost: hardly visible; dim: visible, but not what is meant.
 export type Look = 'solid' | 'chosen' | 'dim' | 'ghost' | 'gone';
@@ -35,14 +35,14 @@ function moveInWords(step: Vec3): string {
 }
 
 // "lifted straight up", or how it is moved first.
-export function wayOut(report: Report, id: number): string {
+export function wayOut(report: PackedReport, id: number): string {
   const moves = (report.removal_path?.[String(id)] ?? []).map(moveInWords).filter(Boolean);
   if (moves.length === 0) return 'lifted straight up';
   if (moves.length > 3) return `moved in ${moves.length} steps, first ${moves[0]}, then lifted`;
   return `moved ${moves.join(', then ')}, then lifted`;
 }
 
-export function stepInWords(report: Report, taken: number): string {
+export function stepInWords(report: PackedReport, taken: number): string {
   const order = report.removal_order;
   const id = order[taken - 1];
   if (id === undefined) return `All ${order.length} parts are on the tray.`;

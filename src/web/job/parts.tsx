@@ -1,9 +1,9 @@
 // The parts as a list: chosen here or in the scenes, and what is known of the chosen one.
 import { ordinal, wayOut } from './looks';
-import type { Report } from '../daemon/types';
+import type { PackedReport } from '../daemon/types';
 
 interface Props {
-  report: Report;
+  report: PackedReport;
   colours: Map<number, string>;
   chosen: number | null;
   choose: (id: number | null) => void;
@@ -28,7 +28,7 @@ export function Parts({ report, colours, chosen, choose }: Props) {
   );
 }
 
-function about(report: Report, id: number | null): string {
+function about(report: PackedReport, id: number | null): string {
   const part = report.parts.find((one) => one.id === id);
   if (part === undefined) return 'Choose a part here or in a picture to see where it belongs. Escape lets go of it.';
   const place = report.removal_order.indexOf(part.id) + 1;

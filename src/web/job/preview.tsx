@@ -26,7 +26,7 @@ export function Preview({ job }: { job: Job }) {
   useEffect(() => {
     let gone = false;
     setUrl('');
-    if (job.folder !== '') pictureOf(job).then((picture) => !gone && setUrl(picture), () => undefined);
+    if (job.folder !== '' && job.kind !== 'program') pictureOf(job).then((picture) => !gone && setUrl(picture), () => undefined);
     return () => {
       gone = true;
     };

@@ -7,6 +7,9 @@ const WAYS: readonly { way: Way; title: string }[] = [
   { way: 'hollow', title: 'Hollow' }, { way: 'packed', title: 'Packed' },
 ];
 
+const SOURCES = { model: 'Estimates', slicer: 'Figures of the slicer', program: 'What the program says of itself',
+                  moves: 'Counted from the program’s moves, without acceleration and heating' } as const;
+
 interface Row {
   title: string;
   value: (one: Estimate) => number | null;
@@ -52,11 +55,11 @@ export function EstimateTable({ estimates, prepared }: { estimates: Estimates; p
   const base = (['as_is', 'solid', 'hollow'] as const).map(fitting)
     .reduce((best, one) => (one && (!best || (one.cost ?? 0) < (best.cost ?? 0)) ? one : best), undefined);
   const baseTitle = WAYS.find(({ way }) => estimates[way] === base)?.title ?? '';
-  const sliced = Object.values(estimates).some((one) => one.source === 'slicer');
+  const source = Object.values(estimates).find((one) => one.source !== null)?.source ?? 'model';
   return (
     <table class="estimates">
       <caption class="quiet-text">
-        {sliced ? 'Figures of the slicer' : 'Estimates'}{baseTitle ? `; differences are against “${baseTitle}”, the cheapest way that is not packed` : ''}.
+        {SOURCES[source]}{baseTitle && ways.length > 1 ? `; differences are against “${baseTitle}”, the cheapest way that is not packed` : ''}.
       </caption>
       <thead>
         <tr>

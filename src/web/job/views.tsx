@@ -4,7 +4,7 @@ import { modelLooks, stepInWords, trayLooks } from './looks';
 import { Parts } from './parts';
 import { Preview } from './preview';
 import { jobFile, Refusal } from '../daemon/api';
-import type { Job, Report } from '../daemon/types';
+import type { Job, PackedReport } from '../daemon/types';
 import type { Scene } from '../scene/scene';
 import { onTheme } from '../theme';
 
@@ -19,7 +19,7 @@ async function bytesOf(job: Job, file: string): Promise<ArrayBuffer> {
   return (await jobFile(job.id, file)).arrayBuffer();
 }
 
-export function Views({ job, report }: { job: Job; report: Report }) {
+export function Views({ job, report }: { job: Job; report: PackedReport }) {
   const modelCanvas = useRef<HTMLCanvasElement>(null);
   const trayCanvas = useRef<HTMLCanvasElement>(null);
   const scenes = useRef<Scenes | null>(null);

@@ -18,20 +18,22 @@ export function PrinterCard({ printer, job }: { printer: Printer; job: Job | und
       <div class="card-head">
         <div>
           <h3>{printer.name}</h3>
-          <p class="quiet-text">{printer.profile}{printer.simulated ? ', simulated' : ''}</p>
+          <p class="quiet-text">{printer.prefer === null ? printer.profile : 'chooses a printer'}{printer.simulated ? ', simulated' : ''}</p>
         </div>
         <Badge badge={badge} />
       </div>
       {printer.print ? <Printing print={printer.print} job={job} printer={printer} /> : <p class="standing">{standing(printer, job)}</p>}
       {printer.print && printer.print.heaters.length > 0 ? <Heaters heaters={printer.print.heaters} /> : null}
       {printer.print?.stage === 'waiting' ? <Question printer={printer} print={printer.print} /> : null}
-      <Controls printer={printer} />
+      {printer.prefer === null ? <Controls printer={printer} /> : null}
     </li>
   );
 }
 
 function standing(printer: Printer, job: Job | undefined): string {
   if (job) return `${job.name} is being handed over.`;
+  if (printer.prefer !== null)
+    return `A model sent here is compared on every printer, and the ${printer.prefer === 'soonest' ? 'soonest ready' : 'cheapest'} is proposed.`;
   if (printer.paused) return 'Paused: no new print starts until it is resumed.';
   if (printer.connected === false) return `Nothing is connected at ${printer.port}. Connect it and switch it on.`;
   if (printer.bed === 'not clear') return 'Take the last print off, then say that the bed is clear.';

@@ -31,7 +31,8 @@ const sentence = (text: string): string => (text === '' ? '' : `${text[0]?.toUpp
 
 // What printing it takes.
 function figures(job: Job): string {
-  const packed = job.estimates?.packed;
-  if (!packed?.fits || packed.time_s === null) return '';
-  return ` · ${duration(packed.time_s)}${packed.cost === null ? '' : ` · ${money(packed.cost, packed.currency)}`}`;
+  const own = job.kind === 'program' ? job.estimates?.as_is : job.estimates?.packed;
+  const time_s = job.predicted_s ?? own?.time_s ?? null;
+  if (!own?.fits || time_s === null) return '';
+  return ` · ${duration(time_s)}${own.cost === null ? '' : ` · ${money(own.cost, own.currency)}`}`;
 }

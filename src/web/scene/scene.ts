@@ -5,7 +5,7 @@ import { DrawnPart } from './drawn_part';
 import { Plates } from './plate';
 import { inScene, Way } from './way';
 import type { ScenePart } from './parts';
-import type { Report } from '../daemon/types';
+import type { PackedReport } from '../daemon/types';
 import type { Looks } from '../job/looks';
 
 const FROM = new Spherical(1, 1.08, 0.5);  // where it is looked at from first
@@ -22,7 +22,7 @@ const NOT_SET = 1e-4;  // the camera's near plane before it looks at anything
 const isCalm = (): boolean => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 // The plates' ground.
-function footprint(report: Report): Box3 {
+function footprint(report: PackedReport): Box3 {
   const [width, depth] = report.printer.build_mm;
   return new Box3().setFromPoints([inScene([0, 0, 0]), inScene([width, depth, 0])]);
 }
@@ -49,7 +49,7 @@ export class Scene {
 
   // Throws where the browser has no WebGL. With a report the parts stand on its trays.
   constructor(private readonly canvas: HTMLCanvasElement, parts: ScenePart[],
-              private readonly pick: (id: number | null) => void, report?: Report) {
+              private readonly pick: (id: number | null) => void, report?: PackedReport) {
     this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     const box = parts.reduce((all, part) => all.expandByObject(part.mesh), new Box3());

@@ -20,6 +20,16 @@ M0 Load the blue filament
 G92 E0
 """
 `;
+const PROGRAM = `G21
+G90
+M109 S200
+G28
+G1 X10 Y10 Z0.2 F3000
+G1 X60 Y10 E5 F1200
+G1 X60 Y60 E10
+M104 S0
+M84
+`;
 const PRINTERS = (ports) => `
 [printer.ender]
 profile = "ender.toml"
@@ -229,5 +239,19 @@ describe('a print', { skip: missing }, () => {
     await open(`#/jobs/${id}`);
     await page.locator('.timeline', { hasText: 'Printed' }).waitFor();
     await screenshot(page, 'done');
+  });
+
+  step('a program of another slicer is shown for what it is', async () => {
+    const { id } = await shop.upload('ender', 'cube.gcode', PROGRAM);
+    await isAt(id, 'ready');
+    await open(`#/jobs/${id}`);
+    await page.locator('.job-head').getByText('a program, printed as it is').waitFor();
+    await page.getByRole('button', { name: 'Program, gcode' }).waitFor();
+    assert.equal(await page.locator('.scenes').count(), 0, 'there is nothing to take apart');
+    assert.equal(await page.locator('.estimates thead th').count(), 2);
+    await assertAccessible(page, 'a program');
+    await screenshot(page, 'program');
+    await open('#/');
+    await page.locator(`[data-job="${id}"]`).getByText('Ready to approve').waitFor();
   });
 });

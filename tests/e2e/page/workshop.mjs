@@ -82,8 +82,13 @@ export class Workshop {
   }
 
   async ask(path, method = 'GET', body = undefined) {
-    const reply = await fetch(`${this.base}/api/v1/${path}`, { method, body, headers: { 'X-Api-Key': this.key } });
-    return reply.json();
+    try {
+      const reply = await fetch(`${this.base}/api/v1/${path}`, { method, body, headers: { 'X-Api-Key': this.key } });
+      return await reply.json();
+    } catch (error) {
+      const log = readFileSync(this.path('daemon.log'), 'utf8').slice(-2000);
+      throw new Error(`${method} ${path}: ${error.cause ?? error}; the daemon ${this.daemon.exitCode ?? this.daemon.signalCode ?? 'runs'}: ${log}`);
+    }
   }
 
   async upload(printer, name, content) {
