@@ -81,7 +81,7 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
         Job {job.id} on {job.printer}{size ? ` · ${size} mm` : ''}{job.received_s ? ` · came ${when(job.received_s)}` : ''}
         {job.kind === 'program' ? ' · a program, printed as it is' : ''}
         {job.chosen_by ? ` · proposed by ${job.chosen_by}` : ''}
-        {job.same_as ? <> · the same file as <a href={jobHref(job.same_as)}>job {job.same_as}</a></> : null}
+        {job.same_as && !job.again_of ? <> · the same file as <a href={jobHref(job.same_as)}>job {job.same_as}</a></> : null}
         {job.again_of ? <> · again of <a href={jobHref(job.again_of)}>job {job.again_of}</a></> : null}
       </p>
       {job.progress ? <Progress job={job} /> : null}

@@ -80,7 +80,7 @@ export function EstimateTable({ estimates, prepared }: { estimates: Estimates; p
             <tr key={row.title}>
               <th scope="row">{row.title}</th>
               {ways.map(({ way }) => (
-                <Cell key={way} row={row} one={estimates[way]} base={base} best={Math.min(...values)}
+                <Cell key={way} row={row} one={estimates[way]} base={base} best={values.length > 1 ? Math.min(...values) : NaN}
                       kind={way === prepared ? 'prepared' : ''} />
               ))}
             </tr>

@@ -238,6 +238,7 @@ describe('a print', { skip: missing }, () => {
     await page.locator(`.history [data-job="${id}"]`).getByText('Printed').waitFor();
     await open(`#/jobs/${id}`);
     await page.locator('.timeline', { hasText: 'Printed' }).waitFor();
+    await page.locator('.scenes.drawn').waitFor({ timeout: 60_000 });
     await screenshot(page, 'done');
   });
 
