@@ -145,10 +145,14 @@ void warn(const Shell& shell, double thin, Warnings& warnings) {
   if (!shell.cavities.empty()) {
     double space = 0;
     for (const Mesh& cavity : shell.cavities) space += std::abs(volume_mm3(cavity));
+    const std::size_t count = shell.cavities.size();
+    const std::string where =
+        count == 1 ? "a sealed cavity of " : std::to_string(count) + " sealed cavities, in all ";
+    const std::string size =
+        space < 1000 ? rounded(space) + " mm³" : rounded(space / 1000) + " cm³";
     warnings.push_back(
-        {"sealed_cavity", "Printed in one piece, the hollowed model traps support or powder in " +
-                              std::to_string(shell.cavities.size()) + " sealed cavities of " +
-                              rounded(space) + " mm³"});
+        {"sealed_cavity",
+         "Printed in one piece, the hollowed model traps support or powder in " + where + size});
   }
   if (thin > kThinShare)
     warnings.push_back({"thin_features", rounded(100 * thin) +
