@@ -19,6 +19,7 @@ from workshop import Workshop, gcode
 KILLS = int(os.environ.get("PACKMERGER_KILLS", 50))
 DISK_FAULTS = int(os.environ.get("PACKMERGER_DISK_FAULTS", 25))
 SEED = int(os.environ.get("PACKMERGER_SEED", 1))
+DAY_S = 86400
 READY_S = 2  # after a kill; a test allows tenfold
 FAILING_DISK = program.binary("libfailing_disk.so")
 
@@ -101,6 +102,30 @@ class Disk(Case):
                 struck += self.broken(number, first, count, cause)
         self.assertGreater(struck, DISK_FAULTS / 2, "most faults must have struck")
         print(f"{struck} of {DISK_FAULTS} faults struck", file=sys.stderr)
+
+
+class Clock(Case):
+    """The wall's clock jumps by days while programs arrive and are printed; time that only passes goes on as it was."""
+
+    def test_jumps(self):
+        shift = self.folder / "shift"
+        shift.write_text("0")
+        shop = Workshop(self, self.folder, printers=1, speed=300, environment={
+            "LD_PRELOAD": program.binary("libshifted_clock.so"), "SHIFTED_CLOCK": str(shift)})
+        shop.start()
+        dropped = {}
+        for number, jump in enumerate([-3, 2, -400, 20000, 0]):
+            mark = f"c{number}"
+            dropped[mark] = gcode(mark, moves=100)
+            shop.drop("m0", f"{mark}.gcode", dropped[mark])
+            shop.wait_for(lambda: len(shop.jobs()) == len(dropped))
+            shift.write_text(str(jump * DAY_S))
+            shop.wait_until_all_ended(len(dropped))
+        jobs = shop.check(dropped)
+        self.assertEqual({job["state"] for job in jobs.values()}, {"done"})
+        received_s = [jobs[f"c{number}"]["received_s"] for number in range(5)]
+        self.assertGreater(max(received_s) - min(received_s), 300 * DAY_S, "the clock did jump")
+        self.assertEqual(shop.end(), 0)
 
 
 if __name__ == "__main__":
