@@ -39,10 +39,16 @@ void fetch(const FetchOrder& order) {
               "Give the daemon's user the right to write to the watched folder.");
 }
 
+// The model first: where its name is taken by now, nothing of it may have been put there.
 void file(const FileOrder& order) {
-  const fs::path settings = settings_beside(order.from);
-  if (order.with_settings && is_there(settings)) move_new(settings, settings_beside(order.to));
   if (fs::exists(order.from)) move_new(order.from, order.to);
+  const fs::path settings = settings_beside(order.from);
+  if (order.with_settings && is_there(settings)) {
+    const fs::path beside = settings_beside(order.to);
+    move_new(settings, is_there(beside)
+                           ? free_path(beside.parent_path(), beside.filename().string())
+                           : beside);
+  }
   const fs::path picture = picture_beside(order.to);
   if (is_there(order.picture) && !is_there(picture)) copy_file_whole(order.picture, picture);
   write_file_whole(order.note, order.note_text);
