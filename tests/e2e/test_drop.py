@@ -4,48 +4,26 @@ beside it at the end."""
 import json
 import pathlib
 import sys
-import tempfile
-import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import program
+import watched
 from bad_inputs import stl
 from shapes import torus
 
-PATIENCE_S = 240
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
-class Drop(unittest.TestCase):
+class Drop(watched.Watched):
+    patience_s = 240
+
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="packmerger-drop-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "out").mkdir()
+        super().setUp()
         quick = 'split = false\nhollow = false\nset = ["tabu_patience=1", "cost.currency=EUR"]\n'
-        (self.folder / "d.toml").write_text(
-            'state = "state"\n[watch]\nstill_s = 0.3\nrescan_s = 0.2\ngive_up_s = 1\n'
-            f'[printer.objet]\nprofile = "objet30"\nhandoff_folder = "out"\n{quick}approve = "auto"\n'
-            f'[printer.uprint]\nprofile = "uprint"\nhandoff_folder = "out"\n{quick}'
-            '[printer.any]\nprofile = "auto"\n')
-        program.Background(self, "packmergerd", "--config", self.folder / "d.toml", log=self.folder / "daemon.log")
-        self.drops = self.folder / "state/folders"
-        self.wait_for(lambda: (self.drops / "any").is_dir() and self.ask("printers", "list").code == 0)
-
-    def ask(self, *arguments):
-        return program.run(*arguments, "--socket", self.folder / "state/packmergerd.sock")
-
-    def job(self, number):
-        shown = self.ask("jobs", "show", number, "--json")
-        return json.loads(shown.out) if shown.code == 0 else {"state": "none"}
-
-    def wait_for(self, holds):
-        end = time.monotonic() + PATIENCE_S
-        while not holds():
-            self.assertLess(time.monotonic(), end, (self.folder / "daemon.log").read_text()[-2000:])
-            time.sleep(0.05)
+        self.start(f'[printer.objet]\nprofile = "objet30"\nhandoff_folder = "out"\n{quick}approve = "auto"\n'
+                   f'[printer.uprint]\nprofile = "uprint"\nhandoff_folder = "out"\n{quick}'
+                   '[printer.any]\nprofile = "auto"\n', last="any")
 
     def reaches(self, number, state):
         self.wait_for(lambda: self.job(number)["state"] in (state, "failed"))

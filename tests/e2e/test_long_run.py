@@ -4,7 +4,6 @@ flat and its web interface answers. PACKMERGER_JOBS: how many."""
 import http.client
 import os
 import pathlib
-import socket
 import sys
 import tempfile
 import threading
@@ -14,18 +13,13 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import program
+from web_daemon import free_port
 from workshop import SETTINGS, Workshop, gcode
 
 JOBS = int(os.environ.get("PACKMERGER_JOBS", 200))
 PRINTERS = 4
 ANSWER_S = 0.05  # p99; a test allows tenfold
 MOST_GROWTH_BYTES = 8 << 20  # from a fifth of the jobs to all of them
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 def resident_bytes(pid):
