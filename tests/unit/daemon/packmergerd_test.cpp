@@ -45,6 +45,7 @@ TEST_F(PackmergerdTest, PrintsWhatIsDropped) {
 TEST_F(PackmergerdTest, TheCheapestPrinterIsProposedAndNeverApprovedByItself) {
   SimulatedMarlin marlin(0, path("record"));
   configure(marlin.port());
+  std::ofstream(path("d.toml"), std::ios::app) << "[printer.any]\nprofile = \"auto\"\n";
   start();
   drop("any", "statue.stl");
   ASSERT_TRUE(reaches(1, "ready"));
@@ -148,18 +149,19 @@ TEST_F(PackmergerdTest, BadSettingsAreToldWithTheLine) {
   const auto code = [&](const std::string& text) {
     std::ofstream(path("bad.toml")) << text;
     return run_process(
-               {{program_.string(), "--config", path("bad.toml").string()}, {}, {}, {}, 0, 0, {}}, 30,
-               {})
+               {{program_.string(), "--config", path("bad.toml").string()}, {}, {}, {}, 0, 0, {}},
+               30, {})
         .status.code;
   };
   EXPECT_EQ(code("nonsense = 1\n"), 78);
   EXPECT_EQ(code("[prepare]\nprogram = \"/nonexistent\"\n[printer.o]\nprofile = "
                  "\"objet30\"\nhandoff_folder = \"/tmp\"\n"),
             78);
-  EXPECT_EQ(run_process({{program_.string(), "--wrong"}, {}, {}, {}, 0, 0, {}}, 30, {}).status.code, 2);
-  EXPECT_EQ(
-      run_process({{program_.string(), "--config", "/none"}, {}, {}, {}, 0, 0, {}}, 30, {}).status.code,
-      66);
+  EXPECT_EQ(run_process({{program_.string(), "--wrong"}, {}, {}, {}, 0, 0, {}}, 30, {}).status.code,
+            2);
+  EXPECT_EQ(run_process({{program_.string(), "--config", "/none"}, {}, {}, {}, 0, 0, {}}, 30, {})
+                .status.code,
+            66);
 }
 
 TEST_F(PackmergerdTest, SocketAbuseDoesNotDisturbIt) {

@@ -90,8 +90,7 @@ class RunningDaemon : public testing::Test {
         << "rescan_s = 1\n[printer.m]\nprofile = \"quick.toml\"\nport = \"" << port
         << "\"\napprove = \"auto\"\nsimulated = " << (simulated ? "true" : "false")
         << "\n[printer.o]\nprofile = \"objet30\"\nhandoff_folder = "
-           "\"share\"\napprove = \"auto\"\nset = [\"cost.currency=EUR\"]\n"
-        << "[printer.any]\nprofile = \"auto\"\n";
+           "\"share\"\napprove = \"auto\"\nset = [\"cost.currency=EUR\"]\n";
   }
 
   void start() {
