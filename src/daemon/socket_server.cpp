@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/descriptor.h"
 #include "base/error.h"
+#include "base/soon.h"
 
 namespace packmerger {
 namespace {
@@ -35,13 +37,13 @@ void remove_stale(const std::filesystem::path& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return;
   if (!S_ISSOCK(status.st_mode)) cannot_listen(path, "something else is there");
-  const sockaddr_un address = address_of(path);
-  const int probe = make_socket();
-  const bool answered =
-      ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
-      errno == EAGAIN;
-  ::close(probe);
-  if (answered)
+  const bool silent = soon([address = address_of(path)] {
+    const Descriptor probe(make_socket());
+    return ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) !=
+               0 &&
+           errno != EAGAIN;
+  });
+  if (!silent)
     throw Error(Fault::kBusy, "Another program answers at " + path.string(),
                 "End it, or name another socket in the daemon's settings.");
   ::unlink(path.c_str());

@@ -10,6 +10,7 @@
 
 #include "base/descriptor.h"
 #include "base/error.h"
+#include "base/soon.h"
 #include "http/exchange.h"
 
 namespace packmerger {
@@ -27,10 +28,14 @@ Descriptor listening_socket(const std::string& address, int port) {
   Descriptor socket(::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const int on = 1;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (::bind(socket.get(), found->ai_addr, found->ai_addrlen) == 0 &&
-      ::listen(socket.get(), SOMAXCONN) == 0)
-    return socket;
-  const int error = errno;
+  int error = 0;
+  soon([&] {
+    const bool bound = ::bind(socket.get(), found->ai_addr, found->ai_addrlen) == 0;
+    error = bound ? 0 : errno;
+    return error != EADDRINUSE;
+  });
+  if (error == 0 && ::listen(socket.get(), SOMAXCONN) == 0) return socket;
+  if (error == 0) error = errno;
   const std::string what =
       "Cannot listen at " + address + " port " + std::to_string(port) + ": " + std::strerror(error);
   if (error == EADDRINUSE)
