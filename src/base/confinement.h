@@ -4,8 +4,6 @@
 // taken back.
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <vector>
 

@@ -121,6 +121,15 @@ void write_event(const Connection& connection, const JobRecord& job, std::string
   statement.bind(job.id).bind(now_s()).bind(state_name(job.state)).bind(note).finish();
 }
 
+// The newest job with the bytes of this one among those whose id fits; 0: none.
+std::int64_t newest_alike(const Connection& connection, const JobRecord& job,
+                          const std::string& id_fits) {
+  Statement row(connection, "SELECT id FROM job WHERE sha256 = ? AND sha256 <> '' AND " + id_fits +
+                                " ORDER BY id DESC LIMIT 1");
+  row.bind(job.sha256).bind(job.id);
+  return row.step() ? row.integer() : 0;
+}
+
 void write_printer(const Connection& connection, const PrinterRecord& printer) {
   Statement statement(connection,
                       "REPLACE INTO printer (name, bed_clear, paused) VALUES (?, ?, ?)");
@@ -208,19 +217,11 @@ std::vector<JobRecord> JobStore::newest(int limit) const {
 }
 
 std::int64_t JobStore::same_bytes(const JobRecord& job) const {
-  Statement row(database_->connection,
-                "SELECT id FROM job WHERE sha256 = ? AND sha256 <> '' AND id <> ? "
-                "ORDER BY id DESC LIMIT 1");
-  row.bind(job.sha256).bind(job.id);
-  return row.step() ? row.integer() : 0;
+  return newest_alike(database_->connection, job, "id <> ?");
 }
 
 std::int64_t JobStore::same_bytes_before(const JobRecord& job) const {
-  Statement row(database_->connection,
-                "SELECT id FROM job WHERE sha256 = ? AND sha256 <> '' AND id < ? "
-                "ORDER BY id DESC LIMIT 1");
-  row.bind(job.sha256).bind(job.id);
-  return row.step() ? row.integer() : 0;
+  return newest_alike(database_->connection, job, "id < ?");
 }
 
 std::vector<JobEvent> JobStore::history(std::int64_t id) const {

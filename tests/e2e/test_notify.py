@@ -6,7 +6,6 @@ import http.server
 import json
 import pathlib
 import shutil
-import socket
 import subprocess
 import sys
 import threading
@@ -16,7 +15,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import program
-from web_daemon import SETTINGS, Daemon, free_port, wait_for
+from web_daemon import SETTINGS, Daemon, free_port, is_open, wait_for
 
 MOSQUITTO = shutil.which("mosquitto", path="/usr/sbin:/usr/bin:/usr/local/sbin")
 
@@ -169,14 +168,7 @@ class Broker:
 
     def start(self):
         self.process = subprocess.Popen([MOSQUITTO, "-c", self.folder / "mosquitto.conf"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        wait_for(self.is_open, "the broker")
-
-    def is_open(self):
-        try:
-            socket.create_connection(("127.0.0.1", self.port), 1).close()
-            return True
-        except OSError:
-            return False
+        wait_for(lambda: is_open(self.port), "the broker")
 
     def retained(self, topic):
         """What the broker keeps below a topic, as somebody is told who comes now."""

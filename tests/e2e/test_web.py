@@ -12,7 +12,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import program
-from web_daemon import STL, Case, Daemon, free_port, wait_for
+from web_daemon import STL, Case, Daemon, free_port, is_open, wait_for
 
 
 class Use(Case):
@@ -238,7 +238,7 @@ class Reload(unittest.TestCase):
             old, daemon.port = daemon.port, free_port()
             daemon.configure(settings.replace(f"port = {old}", "port = PORT"))
             daemon.process.send_signal(signal.SIGHUP)
-            wait_for(daemon.is_open, "the new port")
+            wait_for(lambda: is_open(daemon.port), "the new port")
             self.assertEqual(daemon.ask("GET", "/api/v1/printers")[0], 200)
             try:
                 stream.read()  # ends, in the middle of a message or not
@@ -246,7 +246,7 @@ class Reload(unittest.TestCase):
                 pass
             connection.close()
             daemon.port = old
-            self.assertFalse(daemon.is_open())
+            self.assertFalse(is_open(daemon.port))
             daemon.configure(settings.replace(f"port = {old}", "port = 0"))
             daemon.process.send_signal(signal.SIGHUP)
             wait_for(lambda: "web server ended" in daemon.said(), "its end")

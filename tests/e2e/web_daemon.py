@@ -30,6 +30,14 @@ def free_port():
         return one.getsockname()[1]
 
 
+def is_open(port):
+    try:
+        socket.create_connection(("127.0.0.1", port), 1).close()
+        return True
+    except OSError:
+        return False
+
+
 def wait_for(holds, what, patience=60):
     """What holds() gives, once it is true."""
     end = time.monotonic() + patience
@@ -69,14 +77,7 @@ class Daemon:
     def start(self):
         self.process = subprocess.Popen([program.binary("packmergerd"), "--config", self.folder / "c.toml"],
                                         stdout=self.log, stderr=self.log, env=self.environment)
-        wait_for(self.is_open, "the web server")
-
-    def is_open(self):
-        try:
-            socket.create_connection(("127.0.0.1", self.port), 1).close()
-            return True
-        except OSError:
-            return False
+        wait_for(lambda: is_open(self.port), "the web server")
 
     def stop(self):
         self.process.terminate()
