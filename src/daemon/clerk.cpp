@@ -11,15 +11,10 @@
 namespace packmerger {
 namespace {
 
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(fs::symlink_status(path, ignored));
-}
-
 void fetch_settings(const FetchOrder& order) {
   const fs::path from = settings_beside(order.from);
   const fs::path to = settings_beside(order.to);
-  if (order.with_settings && is_there(from) && !is_there(to)) copy_file_whole(from, to);
+  if (order.with_settings && is_taken(from) && !is_taken(to)) copy_file_whole(from, to);
 }
 
 // A copy whose original cannot be removed is taken back: the file would be found again.
@@ -43,14 +38,14 @@ void fetch(const FetchOrder& order) {
 void file(const FileOrder& order) {
   if (fs::exists(order.from)) move_new(order.from, order.to);
   const fs::path settings = settings_beside(order.from);
-  if (order.with_settings && is_there(settings)) {
+  if (order.with_settings && is_taken(settings)) {
     const fs::path beside = settings_beside(order.to);
-    move_new(settings, is_there(beside)
+    move_new(settings, is_taken(beside)
                            ? free_path(beside.parent_path(), beside.filename().string())
                            : beside);
   }
   const fs::path picture = picture_beside(order.to);
-  if (is_there(order.picture) && !is_there(picture)) copy_file_whole(order.picture, picture);
+  if (is_taken(order.picture) && !is_taken(picture)) copy_file_whole(order.picture, picture);
   write_file_whole(order.note, order.note_text);
 }
 

@@ -67,12 +67,12 @@ std::string cut(std::string text, std::size_t bytes) {
   return text;
 }
 
-bool is_there(const fs::path& path) {
+}  // namespace
+
+bool is_taken(const fs::path& path) {
   struct stat status {};
   return ::lstat(path.c_str(), &status) == 0;
 }
-
-}  // namespace
 
 Moved rename_new(const fs::path& from, const fs::path& to) {
   make_folders(to.parent_path());
@@ -117,8 +117,8 @@ fs::path free_path(const fs::path& folder, const std::string& name) {
         (number == 1 ? std::string() : " (" + std::to_string(number) + ")") + extension;
     const fs::path path = folder / (cut(plain.stem().string(), kMaxName - tail.size()) + tail);
     const bool taken =
-        is_there(path) || std::any_of(kBeside.begin(), kBeside.end(), [&](std::string_view suffix) {
-          return is_there(note_beside(path, suffix));
+        is_taken(path) || std::any_of(kBeside.begin(), kBeside.end(), [&](std::string_view suffix) {
+          return is_taken(note_beside(path, suffix));
         });
     if (!taken) return path;
   }

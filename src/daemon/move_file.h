@@ -10,6 +10,9 @@ namespace packmerger {
 
 enum class Moved { kYes, kOtherFileSystem };
 
+// Whether anything has that name, be it a link to nowhere.
+bool is_taken(const fs::path& path);
+
 // Renames from to to, which must not exist, and syncs both folders; folders on the way to `to` are
 // made. kOtherFileSystem: nothing was done, copy_file_whole can do it. Throws Error{kNoInput} when
 // from is not there, Error{kBusy} when to exists, Error{kCannotWrite} otherwise.
