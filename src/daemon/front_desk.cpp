@@ -19,31 +19,38 @@ bool is_reached_by_others(const std::string& address) {
   return !address.starts_with("127.") && address != "::1";
 }
 
-// The same for this machine and printer always, and told by nothing else.
-std::string uuid_of(const std::string& printer) {
-  std::string machine;
+// What tells this machine from others, for as long as it is installed.
+std::string machine_id() {
   try {
-    machine = read_file("/etc/machine-id", 64);
+    return read_file("/etc/machine-id", 64);
   } catch (const Error&) {
-    machine = machine_name();
+    return machine_name();
   }
+}
+
+// The same for this machine and printer always, and told by nothing else.
+std::string uuid_of(const std::string& machine, const std::string& printer) {
   std::string text = sha256_hex("packmerger " + machine + " " + printer).substr(0, 32);
   for (const std::size_t at : {20, 16, 12, 8}) text.insert(at, "-");
   return text;
 }
 
-MdnsService service_of(const PrinterConfig& printer, int port) {
+MdnsService service_of(const PrinterConfig& printer, int port, const std::string& machine) {
   return {printer.name + " (PackMerger on " + machine_name() + ")",
           static_cast<std::uint16_t>(port),
           {"path=/printers/" + printer.name, std::string("version=") + kOctoprintVersion,
-           std::string("api=") + kOctoprintApi, "uuid=" + uuid_of(printer.name),
+           std::string("api=") + kOctoprintApi, "uuid=" + uuid_of(machine, printer.name),
            "model=" + printer.abilities.id, "vendor=PackMerger"}};
 }
 
 }  // namespace
 
 FrontDesk::FrontDesk(const DaemonConfig& config, Foreman& foreman, KeyRing& keys, Log log)
-    : config_(config), foreman_(foreman), keys_(keys), log_(std::move(log)) {
+    : config_(config),
+      foreman_(foreman),
+      keys_(keys),
+      log_(std::move(log)),
+      machine_(machine_id()) {
   std::error_code ignored;
   fs::remove_all(uploads_folder(config), ignored);
 }
@@ -96,7 +103,7 @@ void FrontDesk::announce() {
   std::vector<MdnsService> services;
   if (web_ && is_reached_by_others(web_->address()))
     for (const PrinterConfig& printer : config_.printers)
-      services.push_back(service_of(printer, web_->port()));
+      services.push_back(service_of(printer, web_->port(), machine_));
   if (mdns_ && mdns_->services() == services) return;
   mdns_.reset();
   if (!services.empty())

@@ -47,6 +47,7 @@ class FrontDesk {
   Foreman& foreman_;
   KeyRing& keys_;
   Log log_;
+  const std::string machine_;  // for the uuids that are announced
   WebQuestions questions_;
   WebEvents events_;
   Queue<std::string> lines_;  // for the log, from other threads
