@@ -14,9 +14,13 @@ constexpr double kRounding = 1e-6;  // of a swath
 
 }  // namespace
 
+double polyjet_passes(const PolyjetSettings& settings, double y_mm) {
+  return std::max(1.0, std::ceil(y_mm / settings.swath_mm - kRounding));
+}
+
 double polyjet_layer_s(const PolyjetSettings& settings, double x_mm, double y_mm) {
-  const double swaths = std::max(1.0, std::ceil(y_mm / settings.swath_mm - kRounding));
-  return settings.layer_s + swaths * (settings.swath_s + settings.per_mm_x_s * x_mm);
+  return settings.layer_s +
+         polyjet_passes(settings, y_mm) * (settings.swath_s + settings.per_mm_x_s * x_mm);
 }
 
 TrayEstimate polyjet_tray(const Profile& profile, const Tray& tray, const Progress& progress) {
