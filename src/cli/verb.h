@@ -15,6 +15,7 @@ void add_verbs(CLI::App& program);
 void add_prepare(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profiles(CLI::App& program);
+void add_calibrate(CLI::App& program);
 void add_devices(CLI::App& program);
 void add_send(CLI::App& program);
 void add_simulate(CLI::App& program);

@@ -12,6 +12,7 @@ void add_verbs(CLI::App& program) {
   add_compare(program);
   add_send(program);
   add_profiles(program);
+  add_calibrate(program);
   add_devices(program);
   add_jobs(program);
   add_keys(program);

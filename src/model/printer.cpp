@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/process.h"
+#include "model/derived_profile.h"
 #include "model/profile_file.h"
 #include "model/profile_keys.h"
 
@@ -35,10 +36,14 @@ fs::path find_profile(const std::string& id, const std::vector<fs::path>& folder
 }
 
 // A base is looked for beside the profile that names it before anywhere else.
-fs::path base_path(const ProfileFile& file) {
+fs::path find_base(const std::string& id, const fs::path& named_in) {
   std::vector<fs::path> folders = profile_folders();
-  folders.insert(folders.begin(), file.path().has_parent_path() ? file.path().parent_path() : ".");
-  const fs::path path = find_profile(*file.base(), folders);
+  folders.insert(folders.begin(), named_in.has_parent_path() ? named_in.parent_path() : ".");
+  return find_profile(id, folders);
+}
+
+fs::path base_path(const ProfileFile& file) {
+  const fs::path path = find_base(*file.base(), file.path());
   if (path.empty())
     file.refuse(file.base_line(),
                 fmt::format("the base profile \"{}\" is not there", *file.base()));
@@ -53,6 +58,19 @@ void check_complete(const Profile& profile, const ProfileFile& file,
       file.refuse(1, fmt::format("the key {} is missing: expected {}", key.name, expected(key)));
   if (const std::string missing = missing_for_abilities(profile); !missing.empty())
     file.refuse(1, missing);
+}
+
+// Where an id or a path, as read_profile() takes it, is read from.
+fs::path profile_path(std::string_view id_or_path) {
+  if (id_or_path.find('/') != std::string_view::npos || id_or_path.ends_with(".toml"))
+    return id_or_path;
+  const std::string id(id_or_path);
+  fs::path path = is_profile_id(id) ? find_profile(id, profile_folders()) : fs::path();
+  if (path.empty())
+    throw Error(Fault::kNoInput, fmt::format("There is no profile \"{}\"", id),
+                "`packmerger profiles list` shows those that are there; a path must contain a "
+                "slash or end in .toml.");
+  return path;
 }
 
 Profile read_profile_file(const fs::path& path) {
@@ -137,20 +155,22 @@ std::vector<fs::path> profile_folders() {
 }
 
 Profile read_profile(std::string_view id_or_path) {
-  if (id_or_path.find('/') != std::string_view::npos || id_or_path.ends_with(".toml"))
-    return read_profile_file(fs::path(id_or_path));
-
-  const std::string id(id_or_path);
-  const fs::path path = is_profile_id(id) ? find_profile(id, profile_folders()) : fs::path();
-  if (path.empty())
-    throw Error(Fault::kNoInput, fmt::format("There is no profile \"{}\"", id),
-                "`packmerger profiles list` shows those that are there; a path must contain a "
-                "slash or end in .toml.");
+  const fs::path path = profile_path(id_or_path);
   Profile profile = read_profile_file(path);
-  if (profile.id != id)
+  if (path != fs::path(id_or_path) && profile.id != id_or_path)
     ProfileFile(path).refuse(
         1, fmt::format("its id is \"{}\", which is not the file's name", profile.id));
   return profile;
+}
+
+std::optional<ProfileBase> base_for(std::string_view id_or_path, const fs::path& file) {
+  fs::path root = profile_path(id_or_path);
+  if (const ProfileFile given(root); given.base()) root = base_path(given);
+  const std::string id = root.stem().string();
+  if (!is_profile_id(id) || file.stem() == id) return std::nullopt;
+  std::error_code ignored;
+  if (!fs::equivalent(find_base(id, file), root, ignored)) return std::nullopt;
+  return ProfileBase{id, read_profile_file(root)};
 }
 
 void set_profile_key(Profile& profile, std::string_view assignment) {

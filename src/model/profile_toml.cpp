@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "model/derived_profile.h"
 #include "model/printer.h"
 #include "model/profile_keys.h"
 
@@ -50,36 +51,80 @@ struct TomlText {
   }
 };
 
+// Keys as lines under the heads of their tables.
+class TomlLines {
+ public:
+  // In the order of keys_of(). The comment may be empty.
+  void add(const Key& key, const std::string& comment) {
+    const std::size_t dot = key.name.find('.');
+    const std::string of = dot == std::string::npos ? "" : key.name.substr(0, dot);
+    if (of != table_) {
+      close();
+      out_ += fmt::format("\n[{}]\n", of);
+      table_ = of;
+    }
+    const std::string value = toml_value(key);
+    if (std::holds_alternative<TextTableKey>(key.kind)) {
+      sub_tables_ += fmt::format("\n[{}]\n{}", key.name, value);
+      return;
+    }
+    const std::string name = dot == std::string::npos ? key.name : key.name.substr(dot + 1);
+    out_ += fmt::format("{} = {}", name, value);
+    if (!comment.empty()) out_ += "  # " + comment;
+    out_ += '\n';
+  }
+
+  std::string text() && {
+    close();
+    return std::move(out_);
+  }
+
+ private:
+  void close() { out_ += std::exchange(sub_tables_, {}); }
+
+  std::string out_;
+  std::string table_;
+  std::string sub_tables_;  // they must follow the plain keys of their table
+};
+
+// Leaves what the base does not say already: a table of texts changes its base's entry by entry.
+bool differs(const Key& key, const Key& of_base) {
+  const auto* table = std::get_if<TextTableKey>(&key.kind);
+  if (table == nullptr) return toml_value(key) != toml_value(of_base);
+  const std::map<std::string, std::string>& old = *std::get<TextTableKey>(of_base.kind).value;
+  std::erase_if(*table->value, [&](const auto& entry) {
+    const auto same = old.find(entry.first);
+    return same != old.end() && same->second == entry.second;
+  });
+  return !table->value->empty();
+}
+
 }  // namespace
 
 std::string toml_value(const Key& key) { return std::visit(TomlText{}, key.kind); }
 
 std::string profile_toml(const Profile& profile) {
   Profile copy = profile;  // keys are bound to something they could change
-  std::string out;
-  std::string table;
-  std::string sub_tables;  // they must follow the plain keys of their table
-  const auto close = [&] { out += std::exchange(sub_tables, {}); };
-  for (const Key& key : keys_of(copy)) {
-    const std::size_t dot = key.name.find('.');
-    const std::string of = dot == std::string::npos ? "" : key.name.substr(0, dot);
-    if (of != table) {
-      close();
-      out += fmt::format("\n[{}]\n", of);
-      table = of;
-    }
-    const std::string value = toml_value(key);
-    if (std::holds_alternative<TextTableKey>(key.kind)) {
-      sub_tables += fmt::format("\n[{}]\n{}", key.name, value);
-      continue;
-    }
-    const std::string name = dot == std::string::npos ? key.name : key.name.substr(dot + 1);
-    out += fmt::format("{} = {}", name, value);
-    if (!key.unit.empty()) out += "  # " + key.unit;
-    out += '\n';
+  const std::vector<Key> keys = keys_of(copy);
+  TomlLines lines;
+  for (const Key& key : keys) lines.add(key, key.unit);
+  return std::move(lines).text();
+}
+
+std::string derived_profile_toml(const Profile& profile, const ProfileBase& base,
+                                 const std::map<std::string, std::string>& notes) {
+  Profile changed = profile;
+  changed.id = base.profile.id;
+  Profile old = base.profile;
+  const std::vector<Key> keys = keys_of(changed);
+  const std::vector<Key> old_keys = keys_of(old);
+  TomlLines lines;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (!differs(keys[i], old_keys[i])) continue;
+    const auto note = notes.find(keys[i].name);
+    lines.add(keys[i], note == notes.end() ? keys[i].unit : note->second);
   }
-  close();
-  return out;
+  return fmt::format("base = {}\n", toml_string(base.id)) + std::move(lines).text();
 }
 
 }  // namespace packmerger

@@ -59,7 +59,7 @@ class Usage(CommandLine):
                 self.expect(2, *wrong)
 
     def test_help_goes_to_stdout(self):
-        for verb in ([], ["prepare"], ["compare"], ["profiles"], ["send"], ["simulate"], ["jobs"], ["printers"]):
+        for verb in ([], ["prepare"], ["compare"], ["profiles"], ["send"], ["calibrate"], ["simulate"], ["jobs"], ["printers"]):
             with self.subTest(" ".join(verb)):
                 result = program.run(*verb, "--help")
                 self.assertEqual((result.code, result.err), (0, ""), str(result))
