@@ -8,56 +8,13 @@
 #include <vector>
 
 #include "pack/fall.h"
+#include "pack/pooled_field.h"
+#include "pack/rating.h"
 
 namespace packmerger {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of a cost: bounds and costs may round differently
-
-// One part in one rotation over one tray: what its positions cost.
-class Rating {
- public:
-  Rating(const TrayState& tray, const RotatedPart& part, double volume_mm3, const TraySpec& spec)
-      : part_(part), spec_(spec), contents_(tray.contents) {
-    before_ = tray.measure();
-    before_.support_mm3 += part.inside_support_mm3;
-    before_.material_mm3 += volume_mm3;
-    before_.parts += 1;
-  }
-
-  // waste: units, summed over the cells.
-  double cost(int x, int y, Height z, std::int64_t waste) const {
-    return spec_.cost->evaluate(measure(x, y, z, waste));
-  }
-  // No cost at this position is less, however it falls there.
-  double bound(int x, int y, Height z, std::int64_t waste) const {
-    return spec_.cost->lower_bound(measure(x, y, z, waste));
-  }
-
-  double waste_mm3(std::int64_t waste) const {
-    return static_cast<double>(std::max<std::int64_t>(0, waste)) *
-           (spec_.grid.cell_mm * spec_.grid.cell_mm * spec_.grid.unit_mm);
-  }
-
-  // The waste where the part's cells that need support hang over a horizon of this sum.
-  std::int64_t waste(Height z, std::int32_t horizon) const {
-    return static_cast<std::int64_t>(part_.hang.size()) * z + part_.hang_sum - horizon;
-  }
-
- private:
-  TrayMeasure measure(int x, int y, Height z, std::int64_t waste) const {
-    const Vec3 at(x * spec_.grid.cell_mm, y * spec_.grid.cell_mm, z * spec_.grid.unit_mm);
-    TrayMeasure measure = before_;
-    measure.size_mm = size_with(contents_, part_.box, at);
-    measure.support_mm3 += waste_mm3(waste);
-    return measure;
-  }
-
-  const RotatedPart& part_;
-  const TraySpec& spec_;
-  TrayMeasure before_;
-  const Box3& contents_;
-};
 
 auto rank(const Spot& spot) {
   return std::tuple(spot.cost, spot.top, spot.z, spot.y, spot.x, spot.rotation);
@@ -68,13 +25,19 @@ auto rank(const Spot& spot) {
 struct Hunt {
   static constexpr std::size_t kMostBlocks = 64;
 
-  Hunt()
-      : xs(kMostBlocks),
+  explicit Hunt(const TrayState& tray)
+      : pooled(tray.upper),
+        xs(kMostBlocks),
         ys(kMostBlocks),
         heights(kMostBlocks * kFallPositions),
         sums(kMostBlocks * kFallPositions) {
     blocks.reserve(kMostBlocks);
   }
+
+  PooledField pooled;
+  std::vector<FallBlock> group_blocks;
+  std::vector<HeightCell> group_cells;
+  std::vector<Height> group_heights;
 
   std::optional<Spot> best;
   double dearest = std::numeric_limits<double>::infinity();  // that is still worth a look
@@ -109,10 +72,9 @@ class Scan {
         ys_(positions(1, rules.y)),
         highest_(rules.on_plate_only ? 0 : spec.ceiling() - part.rise) {
     if (!possible()) return;
-    const int y = least_growth(ys_, tray.contents, part.box, spec.grid.cell_mm, 1);
     least_x_ = least_growth(xs_, tray.contents, part.box, spec.grid.cell_mm, 0);
-    bound_ =
-        std::min(least_bound(xs_, y, 0, 0), least_bound(xs_, std::max(y - 1, ys_.first), 0, 0));
+    least_y_ = least_growth(ys_, tray.contents, part.box, spec.grid.cell_mm, 1);
+    bound_ = least_bound(xs_, ys_, 0, 0);
   }
 
   bool possible() const { return !xs_.empty() && !ys_.empty() && part_.rise <= spec_.ceiling(); }
@@ -122,6 +84,7 @@ class Scan {
   void run(Hunt& hunt) {
     limits_.assign(static_cast<std::size_t>(blocks_of_row()), highest_);
     hunt.blocks.clear();
+    bound_groups(hunt);
     for (int y = ys_.first; y <= ys_.last; ++y)
       for (int block = 0; block < blocks_of_row(); ++block) {
         add_block(hunt, block, y);
@@ -139,22 +102,31 @@ class Scan {
         asked);
   }
 
-  // The bound at the best of these columns, in row y.
-  double least_bound(const Range& xs, int y, Height z, std::int64_t waste) const {
-    const int x = std::clamp(least_x_, xs.first, xs.last);
-    const int before = std::clamp(least_x_ - 1, xs.first, xs.last);
-    const double bound = rating_.bound(x, y, z, waste);
-    return before == x ? bound : std::min(bound, rating_.bound(before, y, z, waste));
+  // The bound at the best of these positions.
+  double least_bound(const Range& xs, const Range& ys, Height z, std::int64_t waste) const {
+    double least = std::numeric_limits<double>::infinity();
+    const Range x = where_least(xs, least_x_);
+    const Range y = where_least(ys, least_y_);
+    for (int row = y.first; row <= y.last; ++row)
+      for (int column = x.first; column <= x.last; ++column)
+        least = std::min(least, rating_.bound(column, row, z, waste));
+    return least;
+  }
+
+  // Of a range: where the contents grow least, given where they do so of all; one of the two.
+  static Range where_least(const Range& range, int least) {
+    return {std::clamp(least - 1, range.first, range.last),
+            std::clamp(least, range.first, range.last)};
   }
 
   int blocks_of_row() const { return (xs_.count() + kFallPositions - 1) / kFallPositions; }
 
-  // The greatest height at which a position of the block is worth a look; -1: none is. It is sought
-  // from the one of the row before on, which is about the same.
-  int limit(const Hunt& hunt, const Range& xs, int y, int known) const {
+  // The greatest height at which one of the positions is worth a look; -1: none is. It is sought
+  // from a known one on, which is about the same.
+  int limit(const Hunt& hunt, const Range& xs, const Range& ys, int known) const {
     if (!hunt.best) return highest_;
     const auto worth_it = [&](int z) {
-      return least_bound(xs, y, static_cast<Height>(z), 0) <= hunt.dearest;
+      return least_bound(xs, ys, static_cast<Height>(z), 0) <= hunt.dearest;
     };
     int low = -1;             // worth it, or below all
     int high = highest_ + 1;  // not worth it, or above all
@@ -173,15 +145,55 @@ class Scan {
     return low;
   }
 
+  int groups_of_row() const { return (xs_.count() + kPool - 1) / kPool; }
+  // Heights of groups from one row of groups to the next: whole blocks.
+  int group_stride() const {
+    return (groups_of_row() + kFallPositions - 1) / kFallPositions * kFallPositions;
+  }
+
+  // Bounds the heights at groups of positions by a few cells of the part on the pooled field.
+  void bound_groups(Hunt& hunt) {
+    const int rows = (ys_.count() + kPool - 1) / kPool;
+    hunt.group_heights.assign(static_cast<std::size_t>(rows * group_stride()), 0);
+    if (!hunt.best) return;
+    hunt.group_cells.clear();
+    for (std::size_t i = 0; i < (part_.reach.size() + kCellsOfGroups - 1) / kCellsOfGroups; ++i)
+      hunt.group_cells.push_back(hunt.pooled.cell(part_.reach[i], xs_.first));
+    hunt.group_blocks.clear();
+    int known = highest_;
+    for (int row = 0; row < rows; ++row) {
+      Height* of_row = &hunt.group_heights[static_cast<std::size_t>(row * group_stride())];
+      std::fill(of_row + groups_of_row(), of_row + group_stride(), kNoPosition);
+      const int y = ys_.first + row * kPool;
+      const Range ys{y, std::min(y + kPool - 1, ys_.last)};
+      for (int group = 0; group < groups_of_row(); group += kFallPositions) {
+        const int x = xs_.first + group * kPool;
+        const Range xs{x, std::min(x + kFallPositions * kPool - 1, xs_.last)};
+        known = limit(hunt, xs, ys, known);
+        if (known >= 0)
+          hunt.group_blocks.push_back(
+              {hunt.pooled.row(y) + group, of_row + group, static_cast<Height>(known)});
+        else
+          std::fill_n(of_row + group, kFallPositions, kNoPosition);
+      }
+    }
+    fall(hunt.group_blocks, hunt.pooled.stride(), hunt.group_cells);
+  }
+
   void add_block(Hunt& hunt, int block, int y) {
+    static_assert(kFallPositions % kPool == 0);
     const int first = xs_.first + block * kFallPositions;
     const Range xs{first, std::min(first + kFallPositions - 1, xs_.last)};
+    const Height* groups = &hunt.group_heights[static_cast<std::size_t>(
+        (y - ys_.first) / kPool * group_stride() + block * kFallPositions / kPool)];
+    const Height least = *std::min_element(groups, groups + kFallPositions / kPool);
+    if (least > highest_) return;
     int& known = limits_[static_cast<std::size_t>(block)];
-    known = limit(hunt, xs, y, known);
-    if (known < 0) return;
+    known = limit(hunt, xs, {y, y}, known);
+    if (known < least) return;
     const std::size_t index = hunt.blocks.size();
     Height* heights = &hunt.heights[index * kFallPositions];
-    std::fill_n(heights, xs.count(), Height{0});
+    for (int i = 0; i < kFallPositions; ++i) heights[i] = groups[i / kPool];
     std::fill_n(heights + xs.count(), kFallPositions - xs.count(), kNoPosition);
     hunt.blocks.push_back({&tray_.upper.origin()[y * tray_.upper.stride() + first], heights,
                            static_cast<Height>(known)});
@@ -206,7 +218,7 @@ class Scan {
   // Sought from the last one on, which is about the same, and to a sixteenth.
   std::int64_t waste_limit(const Hunt& hunt, const Range& xs, int y, Height z) {
     const auto worth_it = [&](std::int64_t waste) {
-      return least_bound(xs, y, z, waste) <= hunt.dearest;
+      return least_bound(xs, {y, y}, z, waste) <= hunt.dearest;
     };
     std::int64_t& limit = waste_limit_;
     while (limit < kMostWaste && worth_it(limit)) limit += limit / 4 + 1;
@@ -235,6 +247,7 @@ class Scan {
     }
   }
 
+  static constexpr std::size_t kCellsOfGroups = 8;  // one of so many: the decisive ones
   static constexpr Height kNoPosition = std::numeric_limits<Height>::max();
   static constexpr std::int64_t kMostWaste = std::int64_t{1} << 40;
 
@@ -247,6 +260,7 @@ class Scan {
   Range ys_;
   int highest_;
   int least_x_ = 0;
+  int least_y_ = 0;
   double bound_ = 0;
   std::vector<int> limits_;  // by block of a row
   std::int64_t waste_limit_ = kMostWaste;
@@ -266,7 +280,7 @@ std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart
     if (scan.possible()) order.push_back(&scan);
   std::stable_sort(order.begin(), order.end(),
                    [](const Scan* a, const Scan* b) { return a->bound() < b->bound(); });
-  Hunt hunt;
+  Hunt hunt(tray);
   for (Scan* scan : order)
     if (scan->bound() <= hunt.dearest) scan->run(hunt);
   return hunt.best;

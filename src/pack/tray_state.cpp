@@ -8,8 +8,8 @@ namespace packmerger {
 HeightField::HeightField(int width, int height, int border, Height empty)
     : border_(border),
       stride_(width + 2 * border),
-      values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border) +
-                  kFallReadAhead,
+      rows_(height + 2 * border),
+      values_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_) + kFallReadAhead,
               empty) {}
 
 TrayState::TrayState(const TraySpec& spec)

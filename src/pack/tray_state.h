@@ -16,6 +16,8 @@ class HeightField {
   HeightField(int width, int height, int border, Height empty);
 
   std::ptrdiff_t stride() const { return stride_; }
+  int rows() const { return rows_; }  // with the border
+  int border() const { return border_; }
   const Height* origin() const { return &values_[index(0, 0)]; }
   Height& at(int x, int y) { return values_[index(x, y)]; }
 
@@ -25,6 +27,7 @@ class HeightField {
   }
   int border_;
   int stride_;
+  int rows_;
   std::vector<Height> values_;
 };
 

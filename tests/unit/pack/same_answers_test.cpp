@@ -35,7 +35,9 @@ Mesh random_part(Random& random) {
 PackProblem random_problem(Random& random) {
   std::vector<Mesh> meshes(2 + random.below(5));
   for (Mesh& mesh : meshes) mesh = random_part(random);
-  PackProblem problem = shapes::problem_of(std::move(meshes), Vec3(48, 40, 60));
+  // The long tray has rows of several blocks, of groups of positions too.
+  const Vec3 build_mm = random.below(4) == 0 ? Vec3(180, 24, 60) : Vec3(48, 40, 60);
+  PackProblem problem = shapes::problem_of(std::move(meshes), build_mm);
   constexpr std::array<double, 3> kGaps{0, 1, 1.7};
   constexpr std::array<double, 3> kCells{1, 2, 4};
   problem.gap_mm = kGaps[random.below(3)];
