@@ -70,6 +70,25 @@ std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const
                              : estimate(profile, trays, assembly_of(*way), progress);
 }
 
+// Of models that are not divided: the unpacked way whose pieces are those that are packed.
+enum class WholePieces { kNone, kHollow, kSolid };
+
+WholePieces whole_pieces(const DividedModels& models, const PlanOptions& options) {
+  const bool whole = std::all_of(models.begin(), models.end(),
+                                 [](const auto& model) { return model->tets.count() == 0; });
+  if (!whole) return WholePieces::kNone;
+  return options.split ? WholePieces::kHollow : WholePieces::kSolid;
+}
+
+// Takes the other way of standing the same pieces where it is known to cost less.
+void prefer_cheaper(std::optional<Arrangement>& way, std::optional<Estimate>& estimate,
+                    const std::optional<Arrangement>& other_way,
+                    const std::optional<Estimate>& other) {
+  if (!estimate || !other || estimate->cost <= other->cost || other_way->trays > way->trays) return;
+  way = other_way;
+  estimate = other;
+}
+
 bool same_poses(const Arrangement& a, const Arrangement& b) {
   return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
                     [](const JobPart& one, const JobPart& other) {
@@ -89,8 +108,8 @@ void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
 }
 
 // Each way is estimated by itself, several at once: a slicer works on one core most of its time.
-void compare_ways(Plan& plan, std::optional<Arrangement> as_is, const Profile& profile,
-                  const Progress& progress) {
+void compare_ways(Plan& plan, const std::optional<Arrangement>& as_is, WholePieces pieces,
+                  const Profile& profile, const Progress& progress) {
   struct Way {
     const std::optional<Arrangement>& way;
     std::optional<Estimate>& estimate;
@@ -107,11 +126,13 @@ void compare_ways(Plan& plan, std::optional<Arrangement> as_is, const Profile& p
     progress.report("estimating", 0.2 + 0.8 * ++done / static_cast<double>(ways.size()));
   });
   if (stands_best) comparison.as_is = comparison.solid;
-  // The slicer need not agree with the ranking of the six ways up, of which the file's own is one.
-  if (!comparison.as_is || !comparison.solid) return;
-  if (comparison.as_is->cost >= comparison.solid->cost) return;
-  comparison.solid = comparison.as_is;
-  plan.solid = std::move(as_is);
+  // The slicer need not agree with the ranking of the six ways up, of which the file's own is one,
+  // nor with the packer.
+  prefer_cheaper(plan.solid, comparison.solid, as_is, comparison.as_is);
+  if (pieces == WholePieces::kSolid)
+    prefer_cheaper(plan.packed, comparison.packed, plan.solid, comparison.solid);
+  if (pieces == WholePieces::kHollow)
+    prefer_cheaper(plan.packed, comparison.packed, plan.hollow, comparison.hollow);
 }
 
 void drop_repeated(Warnings& warnings) {
@@ -168,7 +189,8 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   timed(times, "estimate", [&] {
     progress.report("estimating", 0);
     beside.wait();
-    compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), profile, progress);
+    compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), whole_pieces(models, options),
+                 profile, progress);
   });
 
   drop_repeated(warnings);
