@@ -47,6 +47,9 @@ struct LiveJob {
   double retry_s = 0;  // not before, on the clock of advance()
 };
 
+// Which of the two threads has a job.
+enum class Preparer { kWorker, kChecker };
+
 class Foreman {
  public:
   using Log = std::function<void(const std::string&)>;
@@ -96,7 +99,7 @@ class Foreman {
   const JobStore& store() const { return store_; }
   const LiveJob* live(std::int64_t id) const;
   // The jobs with the workers.
-  const std::set<std::int64_t>& preparing() const { return preparing_; }
+  const std::map<std::int64_t, Preparer>& preparing() const { return preparing_; }
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
   // How much longer the printer takes than estimates of this source predict, as its finished prints
@@ -154,7 +157,7 @@ class Foreman {
   void check_takes(const PrinterConfig& printer, const std::string& name) const;
   ModelOptions model_options(const PrinterConfig& printer, const PrinterConfig* wish,
                              const JobRecord& job) const;
-  bool is_worker_free(const JobRecord& job) const;
+  bool is_free(Preparer preparer) const;
   double busy_for_s(const PrinterConfig& printer) const;
   std::string trouble_at(const PrinterConfig& printer) const;
   void start_comparing(JobRecord job, const PrinterConfig& wish);
@@ -171,7 +174,7 @@ class Foreman {
   Crew& crew_;
   Log log_;
   std::map<std::int64_t, LiveJob> live_;
-  std::set<std::int64_t> preparing_;                 // the jobs with the workers, one each
+  std::map<std::int64_t, Preparer> preparing_;       // the jobs with the workers, one each
   std::map<std::string, std::int64_t> sending_;      // the job with each printer's sender
   std::map<std::filesystem::path, double> refused_;  // files that could not be copied; until when
   std::optional<Devices> devices_;                   // as last told

@@ -67,7 +67,7 @@ void Foreman::start_comparing(JobRecord job, const PrinterConfig& wish) {
   }
   job.state = JobState::kPreparing;
   store_.save(job, "comparing the printers");
-  preparing_.insert(job.id);
+  preparing_[job.id] = Preparer::kWorker;
   order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
   crew_.worker.push(std::move(order));
   say(job, "comparing the printers");

@@ -63,16 +63,16 @@ std::vector<std::string> Foreman::prepare_command(const PrinterConfig& printer,
   return argv;
 }
 
-bool Foreman::is_worker_free(const JobRecord& job) const {
-  return std::none_of(preparing_.begin(), preparing_.end(), [&](std::int64_t id) {
-    const std::optional<JobRecord> other = store_.find(id);
-    return other && is_program(other->name) == is_program(job.name);
-  });
+// No record is read for this: it is asked for every job that waits.
+bool Foreman::is_free(Preparer preparer) const {
+  return std::none_of(preparing_.begin(), preparing_.end(),
+                      [&](const auto& item) { return item.second == preparer; });
 }
 
 void Foreman::start_preparing(JobRecord job) {
   const PrinterConfig* printer = config_.printer(job.printer);
-  if (printer == nullptr || !is_worker_free(job)) return;
+  const Preparer preparer = is_program(job.name) ? Preparer::kChecker : Preparer::kWorker;
+  if (printer == nullptr || !is_free(preparer)) return;
   if (printer->is_auto()) return start_comparing(job, *printer);
   std::vector<std::string> command;
   try {
@@ -85,7 +85,7 @@ void Foreman::start_preparing(JobRecord job) {
   ++job.attempt;
   job.state = JobState::kPreparing;
   store_.save(job, job.attempt == 1 ? "" : "attempt " + std::to_string(job.attempt));
-  preparing_.insert(job.id);
+  preparing_[job.id] = preparer;
   PrepareOrder order;
   order.job = job.id;
   order.input = job.input;
@@ -93,7 +93,7 @@ void Foreman::start_preparing(JobRecord job) {
   order.argv = std::move(command);
   order.limits = config_.prepare;
   order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
-  (is_program(job.name) ? crew_.checker : crew_.worker).push(std::move(order));
+  (preparer == Preparer::kChecker ? crew_.checker : crew_.worker).push(std::move(order));
   say(job, "preparing");
 }
 

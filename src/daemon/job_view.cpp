@@ -262,7 +262,8 @@ std::string daemon_status(const Foreman& foreman) {
                                    [](const PrinterConfig& printer) { return !printer.is_auto(); });
   std::string text = count == 0 ? "no printer is configured"
                                 : fmt::format("{} printer{}", count, count > 1 ? "s" : "");
-  for (const std::int64_t job : foreman.preparing()) text += fmt::format("; preparing job {}", job);
+  for (const auto& [job, preparer] : foreman.preparing())
+    text += fmt::format("; preparing job {}", job);
   for (const PrinterConfig& printer : printers)
     if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
       text += fmt::format("; job {} is at {}", job, printer.name);

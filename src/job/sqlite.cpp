@@ -50,24 +50,37 @@ void Connection::run(const char* sql) {
   if (code != SQLITE_OK) fail(get(), code);
 }
 
-Statement::Statement(const Connection& connection, std::string_view sql)
-    : connection_(connection.get()) {
+Prepared Connection::lend(std::string_view sql) const {
+  const auto found = idle_.find(std::string(sql));
+  if (found != idle_.end() && found->second) return std::move(found->second);
   sqlite3_stmt* raw = nullptr;
-  const int code =
-      sqlite3_prepare_v2(connection_, sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
-  statement_.reset(raw);
-  if (code != SQLITE_OK) fail(connection_, code);
+  const int code = sqlite3_prepare_v3(get(), sql.data(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
+  Prepared statement(raw);
+  if (code != SQLITE_OK) fail(get(), code);
+  return statement;
 }
+
+void Connection::give_back(Prepared statement) const {
+  sqlite3_reset(statement.get());  // its code repeats what step() told
+  sqlite3_clear_bindings(statement.get());
+  idle_[sqlite3_sql(statement.get())] = std::move(statement);
+}
+
+Statement::Statement(const Connection& connection, std::string_view sql)
+    : connection_(connection), statement_(connection.lend(sql)) {}
+
+Statement::~Statement() { connection_.give_back(std::move(statement_)); }
 
 Statement& Statement::bind(std::int64_t value) {
   const int code = sqlite3_bind_int64(statement_.get(), ++bound_, value);
-  if (code != SQLITE_OK) fail(connection_, code);
+  if (code != SQLITE_OK) fail(code);
   return *this;
 }
 
 Statement& Statement::bind(double value) {
   const int code = sqlite3_bind_double(statement_.get(), ++bound_, value);
-  if (code != SQLITE_OK) fail(connection_, code);
+  if (code != SQLITE_OK) fail(code);
   return *this;
 }
 
@@ -75,7 +88,7 @@ Statement& Statement::bind(std::string_view value) {
   const char* bytes = value.empty() ? "" : value.data();  // a null pointer would bind NULL
   const int code = sqlite3_bind_text64(statement_.get(), ++bound_, bytes, value.size(),
                                        SQLITE_TRANSIENT, SQLITE_UTF8);
-  if (code != SQLITE_OK) fail(connection_, code);
+  if (code != SQLITE_OK) fail(code);
   return *this;
 }
 
@@ -83,7 +96,7 @@ bool Statement::step() {
   column_ = 0;
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
-  if (code != SQLITE_DONE) fail(connection_, code);
+  if (code != SQLITE_DONE) fail(code);
   return false;
 }
 

@@ -8,11 +8,17 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 namespace packmerger::sqlite {
 
 // Throws the Error that fits SQLite's result code.
 [[noreturn]] void fail(sqlite3* connection, int code);
+
+struct Finalize {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+using Prepared = std::unique_ptr<sqlite3_stmt, Finalize>;
 
 class Connection {
  public:
@@ -22,17 +28,26 @@ class Connection {
   sqlite3* get() const { return connection_.get(); }
   void run(const char* sql);  // statements without results, no parameters
 
+  // A prepared statement for this text: parsing takes longer than most statements run. The one that
+  // is given back is lent again.
+  Prepared lend(std::string_view sql) const;
+  void give_back(Prepared statement) const;
+
  private:
   struct Close {
     void operator()(sqlite3* connection) const { sqlite3_close_v2(connection); }
   };
   std::unique_ptr<sqlite3, Close> connection_;
+  mutable std::unordered_map<std::string, Prepared> idle_;  // by text
 };
 
-// One prepared statement, used once: bind in order, then step() until it is false.
+// One statement: bind in order, then step() until it is false. The connection outlives it.
 class Statement {
  public:
   Statement(const Connection& connection, std::string_view sql);
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+  ~Statement();
 
   Statement& bind(std::int64_t value);
   Statement& bind(double value);
@@ -51,11 +66,10 @@ class Statement {
   bool flag() { return integer() != 0; }
 
  private:
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-  };
-  sqlite3* connection_;
-  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  [[noreturn]] void fail(int code) const { sqlite::fail(connection_.get(), code); }
+
+  const Connection& connection_;
+  Prepared statement_;
   int bound_ = 0;
   int column_ = 0;
 };

@@ -74,6 +74,12 @@ class Disk(Case):
 
     def broken(self, number, first, count, cause):
         shop, when, told = self.shop(number)
+        try:
+            return self.mended(shop, number, first, count, cause, when, told)
+        finally:
+            shop.close()
+
+    def mended(self, shop, number, first, count, cause, when, told):
         when.write_text(f"{first} {count} {cause}")
         dropped = {f"{number}-{i}.gcode": gcode(f"{number}-{i}.gcode") for i in range(2)}
         started = shop.start()

@@ -47,9 +47,11 @@ class Workshop:
         self.printers = [f"m{i}" for i in range(printers)]
         shown = program.run("profiles", "show", "marlin").out
         (self.folder / "fast.toml").write_text(shown.replace("boot_wait_s = 2", "boot_wait_s = 0.05"))
+        self.simulators = []
         for name in self.printers:
             one = program.Background(test, "packmerger", "simulate", "marlin", "--speed", speed, "--record",
                                      self.record(name), log=self.folder / f"{name}.log")
+            self.simulators.append(one)
             settings += PRINTER.format(name=name, profile=self.folder / "fast.toml", port=one.child.stdout.readline().strip())
         (self.folder / "d.toml").write_text(settings)
         self.daemon = None
@@ -88,6 +90,12 @@ class Workshop:
     def end(self):
         self.daemon.send_signal(signal.SIGTERM)
         return self.daemon.wait(timeout=60)
+
+    def close(self):
+        """Ends the printers too; they end with the test anyway."""
+        self.kill()
+        for one in self.simulators:
+            one.end()
 
     def log(self):
         return (self.folder / "daemon.log").read_text(errors="replace")[-3000:]
