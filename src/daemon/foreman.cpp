@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 
 #include "daemon/job_view.h"
 #include "daemon/model_options.h"
@@ -86,7 +85,8 @@ void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
 }
 
 void Foreman::recover() {
-  for (JobRecord job : store_.open_jobs()) {
+  const std::map<std::int64_t, JobRecord> open = store_.open_jobs();
+  for (auto [id, job] : open) {
     if (job.state == JobState::kClaiming) finish_claim(job);
     if (job.state != JobState::kSending) continue;
     const PrinterConfig* printer = config_.printer(job.printer);
@@ -190,22 +190,23 @@ void Foreman::remove_copied_original(const JobRecord& job) const {
 void Foreman::advance(double now_s) {
   now_s_ = now_s;
   notice_printers();
-  std::vector<JobRecord> jobs = store_.open_jobs();
+  const std::map<std::int64_t, JobRecord>& open = store_.open_jobs();  // a step changes it
+  std::vector<std::int64_t> jobs;
+  for (const auto& [id, job] : open) jobs.push_back(id);
   // a job whose first trays are printed goes before the others
   std::stable_partition(jobs.begin(), jobs.end(),
-                        [](const JobRecord& job) { return job.next_tray > 1; });
-  for (const JobRecord& job : jobs) step(job);
-  drop_idle_live_jobs(jobs);
+                        [&](std::int64_t id) { return open.at(id).next_tray > 1; });
+  for (const std::int64_t id : jobs)
+    if (const auto job = open.find(id); job != open.end()) step(job->second);
+  drop_idle_live_jobs();
 }
 
-void Foreman::drop_idle_live_jobs(const std::vector<JobRecord>& open) {
-  std::set<std::int64_t> ids;
-  for (const JobRecord& job : open) ids.insert(job.id);
+void Foreman::drop_idle_live_jobs() {
   std::erase_if(live_, [&](const auto& item) {
     const LiveJob& live = item.second;
     const bool idle =
         !live.cancel_prepare && !live.control && !live.with_clerk && live.fetching_from.empty();
-    return idle && !ids.contains(item.first);
+    return idle && !store_.open_jobs().contains(item.first);
   });
 }
 
@@ -232,11 +233,12 @@ void Foreman::step(const JobRecord& job) {
   }
 }
 
-void Foreman::start_sending(JobRecord job) {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  if (printer == nullptr || waits_for(*this, job) != Waits::kNothing) return;
-  LiveJob& live = live_[job.id];
+void Foreman::start_sending(const JobRecord& approved) {
+  const PrinterConfig* printer = config_.printer(approved.printer);
+  if (printer == nullptr || waits_for(*this, approved) != Waits::kNothing) return;
+  LiveJob& live = live_[approved.id];
   if (now_s_ < live.retry_s) return;
+  JobRecord job = approved;
   PrinterRecord record = store_.printer(job.printer);
   if (printer->has_bed()) record.bed_clear = false;
   job.state = JobState::kSending;
@@ -257,9 +259,10 @@ void Foreman::start_sending(JobRecord job) {
 }
 
 // The place is recorded before the file is moved there, so that an interrupted move is finished.
-void Foreman::file_away(JobRecord job) {
-  LiveJob& live = live_[job.id];
-  if (live.with_clerk || preparing_.contains(job.id) || now_s_ < live.retry_s) return;
+void Foreman::file_away(const JobRecord& ended) {
+  LiveJob& live = live_[ended.id];
+  if (live.with_clerk || preparing_.contains(ended.id) || now_s_ < live.retry_s) return;
+  JobRecord job = ended;
   const bool good = job.state == JobState::kDone || job.state == JobState::kHandedOver;
   if (job.filed.empty() || (is_there(job.input) && is_there(job.filed))) {
     const fs::path base = fs::path(job.origin).parent_path();

@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -152,7 +151,7 @@ class Foreman {
 
   double retry_at(int failures) const;
   bool is_refused(const std::filesystem::path& file);
-  void drop_idle_live_jobs(const std::vector<JobRecord>& open);
+  void drop_idle_live_jobs();
   void step(const JobRecord& job);
   void check_takes(const PrinterConfig& printer, const std::string& name) const;
   ModelOptions model_options(const PrinterConfig& printer, const PrinterConfig* wish,
@@ -164,10 +163,10 @@ class Foreman {
   void propose(JobRecord job, const PrinterConfig& wish, const std::vector<PrinterOffer>& offers);
   std::vector<std::string> prepare_command(const PrinterConfig& printer,
                                            const JobRecord& job) const;
-  void start_preparing(JobRecord job);
-  void approve_by_itself(JobRecord job);
-  void start_sending(JobRecord job);
-  void file_away(JobRecord job);
+  void start_preparing(const JobRecord& waiting);
+  void approve_by_itself(const JobRecord& ready);
+  void start_sending(const JobRecord& approved);
+  void file_away(const JobRecord& ended);
 
   const DaemonConfig& config_;
   JobStore& store_;

@@ -29,12 +29,12 @@ std::vector<std::string> compare_command(const DaemonConfig& config, const Print
 // For how long the printer is busy with what it prints and with what is ready to be printed there.
 double Foreman::busy_for_s(const PrinterConfig& printer) const {
   double sum_s = 0;
-  for (const JobRecord& job : store_.open_jobs()) {
+  for (const auto& [id, job] : store_.open_jobs()) {
     if (job.printer != printer.name || job.held || has_ended(job.state)) continue;
     const double left_s = std::max(0.0, job.predicted_s - job.printed_s);
     if (job.state == JobState::kReady || job.state == JobState::kApproved) sum_s += left_s;
     if (job.state != JobState::kSending) continue;
-    const LiveJob* running = live(job.id);
+    const LiveJob* running = live(id);
     const PrintReport print = running != nullptr ? running->print : PrintReport{};
     const bool is_last = job.next_tray >= job.trays;
     sum_s +=

@@ -40,10 +40,11 @@ void Foreman::notice_printers() {
     bool& was_there = there_.emplace(printer.name, true).first->second;
     if (std::exchange(was_there, is_there) == is_there) continue;
     log_("printer " + printer.name + (is_there ? ": connected" : ": not connected"));
-    for (const JobRecord& job : is_there ? store_.open_jobs() : std::vector<JobRecord>{})
+    if (!is_there) continue;
+    for (const auto& [id, job] : store_.open_jobs())
       if (job.printer == printer.name && job.state == JobState::kApproved) {
-        live_[job.id].failures = 0;
-        live_[job.id].retry_s = 0;
+        live_[id].failures = 0;
+        live_[id].retry_s = 0;
       }
   }
 }

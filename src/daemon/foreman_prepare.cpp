@@ -69,11 +69,12 @@ bool Foreman::is_free(Preparer preparer) const {
                       [&](const auto& item) { return item.second == preparer; });
 }
 
-void Foreman::start_preparing(JobRecord job) {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  const Preparer preparer = is_program(job.name) ? Preparer::kChecker : Preparer::kWorker;
+void Foreman::start_preparing(const JobRecord& waiting) {
+  const PrinterConfig* printer = config_.printer(waiting.printer);
+  const Preparer preparer = is_program(waiting.name) ? Preparer::kChecker : Preparer::kWorker;
   if (printer == nullptr || !is_free(preparer)) return;
-  if (printer->is_auto()) return start_comparing(job, *printer);
+  if (printer->is_auto()) return start_comparing(waiting, *printer);
+  JobRecord job = waiting;
   std::vector<std::string> command;
   try {
     job.folder = (job_path(job.id) / folder_name(job.attempt + 1)).string();
@@ -97,14 +98,15 @@ void Foreman::start_preparing(JobRecord job) {
   say(job, "preparing");
 }
 
-void Foreman::approve_by_itself(JobRecord job) {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  if (printer == nullptr || job.held || !job.pays) return;
-  if (printer->approve != Approve::kAuto && !job.at_once) return;
-  if (!job.chosen_by.empty()) {  // nobody chose this printer
-    const PrinterConfig* wish = config_.printer(job.chosen_by);
+void Foreman::approve_by_itself(const JobRecord& ready) {
+  const PrinterConfig* printer = config_.printer(ready.printer);
+  if (printer == nullptr || ready.held || !ready.pays) return;
+  if (printer->approve != Approve::kAuto && !ready.at_once) return;
+  if (!ready.chosen_by.empty()) {  // nobody chose this printer
+    const PrinterConfig* wish = config_.printer(ready.chosen_by);
     if (wish == nullptr || wish->approve != Approve::kAuto) return;
   }
+  JobRecord job = ready;
   job.state = JobState::kApproved;
   job.reason.clear();
   std::string why = "approved by itself: it is the cheapest way";

@@ -13,10 +13,24 @@ using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
 
+namespace {
+
+bool is_open(const JobRecord& job) { return job.ended_s == 0 || !job.filing_done; }
+
+}  // namespace
+
 struct JobStore::Database {
   Connection connection;
   Listener listener;
+  std::map<std::int64_t, JobRecord> open;
   explicit Database(const std::filesystem::path& file) : connection(file) {}
+
+  void written(const JobRecord& job) {
+    if (is_open(job))
+      open.insert_or_assign(job.id, job);
+    else
+      open.erase(job.id);
+  }
 };
 
 namespace {
@@ -151,6 +165,8 @@ JobStore::JobStore(const std::filesystem::path& file)
   Connection& connection = database_->connection;
   connection.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
   bring_up_to_date(connection, file);
+  Statement rows(connection, select("WHERE ended_s = 0 OR filing_done = 0"));
+  while (rows.step()) database_->written(read_job(rows));
 }
 
 JobStore::JobStore(JobStore&&) noexcept = default;
@@ -167,6 +183,7 @@ JobRecord JobStore::add(JobRecord job) {
   job.id = sqlite3_last_insert_rowid(connection.get());
   write_event(connection, job, "");
   transaction.commit();
+  database_->written(job);
   if (database_->listener) database_->listener(job, "");
   return job;
 }
@@ -186,6 +203,7 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
   if (is_told) write_event(connection, job, note);
   if (printer != nullptr) write_printer(connection, *printer);
   transaction.commit();
+  database_->written(job);
   if (is_told && database_->listener) database_->listener(job, note);
 }
 
@@ -196,7 +214,9 @@ void JobStore::forget(std::int64_t id) {
   Transaction transaction(connection);
   Statement statement(connection, "DELETE FROM job WHERE id = ? AND state = 'claiming'");
   statement.bind(id).finish();
+  const bool forgotten = sqlite3_changes(connection.get()) > 0;
   transaction.commit();
+  if (forgotten) database_->open.erase(id);
 }
 
 std::optional<JobRecord> JobStore::find(std::int64_t id) const {
@@ -205,10 +225,7 @@ std::optional<JobRecord> JobStore::find(std::int64_t id) const {
   return read_job(row);
 }
 
-std::vector<JobRecord> JobStore::open_jobs() const {
-  Statement rows(database_->connection, select("WHERE ended_s = 0 OR filing_done = 0 ORDER BY id"));
-  return read_jobs(rows);
-}
+const std::map<std::int64_t, JobRecord>& JobStore::open_jobs() const { return database_->open; }
 
 std::vector<JobRecord> JobStore::newest(int limit) const {
   Statement rows(database_->connection, select("ORDER BY id DESC LIMIT ?"));

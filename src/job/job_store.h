@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,8 +98,9 @@ class JobStore {
   void forget(std::int64_t id);
 
   std::optional<JobRecord> find(std::int64_t id) const;
-  // Jobs that have not ended, and ended ones whose file is not yet filed; oldest first.
-  std::vector<JobRecord> open_jobs() const;
+  // Jobs that have not ended, and ended ones whose file is not yet filed, by id. They are at hand
+  // in memory, as the database has them; a write changes them.
+  const std::map<std::int64_t, JobRecord>& open_jobs() const;
   // At most `limit` jobs, newest first.
   std::vector<JobRecord> newest(int limit) const;
   // The newest other job with the same bytes for any printer; 0: none.
