@@ -4,6 +4,7 @@
 
 #include <iostream>
 
+#include "base/confinement.h"
 #include "base/error.h"
 #include "daemon/config.h"
 #include "daemon/loop.h"
@@ -34,6 +35,9 @@ int run(const packmerger::DaemonOptions& options) {
   }
   if (::geteuid() == 0)
     log("warning: running as root; a user of its own in the group dialout is enough");
+  if (!packmerger::can_confine_files())
+    log("warning: this kernel has no Landlock: what prepares models has no network, but may write "
+        "wherever this user may; Linux 5.13 or newer keeps it in its job's folder");
   ::signal(SIGPIPE, SIG_IGN);  // whoever read our messages may go away
   packmerger::run_daemon(read, log);
   return 0;

@@ -47,6 +47,19 @@ TEST(JobFile, AnyNameBecomesAPlainOne) {
   }));
 }
 
+TEST(JobFile, ALongNameIsNotCutInsideACharacter) {
+  for (const std::string character : {"ü", "日", "🐰"})
+    for (int ascii = 0; ascii < 4; ++ascii) {
+      std::string given;
+      while (given.size() < 300) given += character;
+      given += std::string(static_cast<std::size_t>(ascii), 'a') + ".gcode";
+      const std::string name = job_file_name(given);
+      EXPECT_LE(name.size(), 200U);
+      EXPECT_GT(name.size(), 200U - character.size());
+      EXPECT_TRUE(name.starts_with(character)) << name;
+    }
+}
+
 TEST(JobFile, PrintersRefuseWhatTheyCannotExecute) {
   const auto fault = [](const char* profile, FileKind kind) {
     return fault_of([&] { check_program_kind(read_profile(profile), kind); });
