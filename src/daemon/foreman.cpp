@@ -192,13 +192,21 @@ void Foreman::advance(double now_s) {
   notice_printers();
   const std::map<std::int64_t, JobRecord>& open = store_.open_jobs();  // a step changes it
   std::vector<std::int64_t> jobs;
-  for (const auto& [id, job] : open) jobs.push_back(id);
+  for (const auto& [id, job] : open)
+    if (may_step(job)) jobs.push_back(id);
   // a job whose first trays are printed goes before the others
   std::stable_partition(jobs.begin(), jobs.end(),
                         [&](std::int64_t id) { return open.at(id).next_tray > 1; });
   for (const std::int64_t id : jobs)
     if (const auto job = open.find(id); job != open.end()) step(job->second);
   drop_idle_live_jobs();
+}
+
+// Thousands may wait to be prepared, and this is asked of each at every turn of the loop.
+bool Foreman::may_step(const JobRecord& job) const {
+  if (job.state == JobState::kReceived || job.state == JobState::kPreparing)
+    return is_free(preparer_of(job));
+  return job.state != JobState::kSending;
 }
 
 void Foreman::drop_idle_live_jobs() {

@@ -156,6 +156,8 @@ class Foreman {
   void check_takes(const PrinterConfig& printer, const std::string& name) const;
   ModelOptions model_options(const PrinterConfig& printer, const PrinterConfig* wish,
                              const JobRecord& job) const;
+  bool may_step(const JobRecord& job) const;
+  static Preparer preparer_of(const JobRecord& job);
   bool is_free(Preparer preparer) const;
   double busy_for_s(const PrinterConfig& printer) const;
   std::string trouble_at(const PrinterConfig& printer) const;

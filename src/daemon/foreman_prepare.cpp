@@ -63,7 +63,10 @@ std::vector<std::string> Foreman::prepare_command(const PrinterConfig& printer,
   return argv;
 }
 
-// No record is read for this: it is asked for every job that waits.
+Preparer Foreman::preparer_of(const JobRecord& job) {
+  return is_program(job.name) ? Preparer::kChecker : Preparer::kWorker;
+}
+
 bool Foreman::is_free(Preparer preparer) const {
   return std::none_of(preparing_.begin(), preparing_.end(),
                       [&](const auto& item) { return item.second == preparer; });
@@ -71,7 +74,7 @@ bool Foreman::is_free(Preparer preparer) const {
 
 void Foreman::start_preparing(const JobRecord& waiting) {
   const PrinterConfig* printer = config_.printer(waiting.printer);
-  const Preparer preparer = is_program(waiting.name) ? Preparer::kChecker : Preparer::kWorker;
+  const Preparer preparer = preparer_of(waiting);
   if (printer == nullptr || !is_free(preparer)) return;
   if (printer->is_auto()) return start_comparing(waiting, *printer);
   JobRecord job = waiting;

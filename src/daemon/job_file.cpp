@@ -27,11 +27,13 @@ constexpr std::size_t kLongestName = 200;
 }  // namespace
 
 FileKind kind_of_file(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return FileKind::kUnknown;
+  const std::string_view given = name.substr(dot);
+  const auto same_letter = [](unsigned char a, unsigned char b) { return std::tolower(a) == b; };
   for (const auto& [ending, kind] : kEndings)
-    if (lower.ends_with(ending)) return kind;
+    if (std::equal(given.begin(), given.end(), ending.begin(), ending.end(), same_letter))
+      return kind;
   return FileKind::kUnknown;
 }
 
