@@ -40,6 +40,7 @@ GcodeStream::GcodeStream(GcodeChannel& channel, std::vector<std::string> command
       control_(control) {}
 
 void GcodeStream::run() {
+  reporter_.state(PrintState::kPrinting);
   std::size_t number = 1;
   while (!is_behind_program(number) || !position_seen_) {
     if (number > commands_.size() + 1 + kMaxPositionTries)

@@ -39,7 +39,9 @@ struct PrintReport {
 };
 
 // Called on the thread that prints: at every change of state, and otherwise from once to ten times
-// a second. Must return quickly; an exception thrown by it ends the print as a failure does.
+// a second. Before the first byte of the job is sent the state is kPrinting; nothing but
+// kConnecting, and kWaiting at a printer that cannot begin, comes before. Must return quickly; an
+// exception thrown by it ends the print as a failure does.
 using PrintListener = std::function<void(const PrintReport&)>;
 
 // Called on the thread that prints, before anything further is sent: `done` of `total` lines or

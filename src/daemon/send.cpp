@@ -56,7 +56,12 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
   StreamOptions options = stream_options(profile, job, tray);
   ProgressFile told(told_file);
   options.on_acknowledged = [&](std::size_t done, std::size_t total) {
-    told.acknowledged(done, total);
+    try {
+      told.acknowledged(done, total);
+    } catch (const Error&) {
+      // A print that goes on is worth more than the note of how far it is. The next one is tried.
+      if (done == 0) throw;
+    }
   };
   if (profile.dialect == Dialect::kUsb) {
     const UsbDevice device = find_usb_printer(connected_devices().usb, port, profile.link.usb_ids);

@@ -7,11 +7,17 @@
 namespace packmerger {
 namespace {
 
-SendOutcome outcome_of(const Error& error, bool printed, const PrintControl& control) {
+// Told by every link before the first byte of the job is sent; a printer may be waited for before.
+bool has_begun(const PrintReport& report) {
+  return report.done > 0 ||
+         (report.state != PrintState::kConnecting && report.state != PrintState::kWaiting);
+}
+
+SendOutcome outcome_of(const Error& error, bool begun, const PrintControl& control) {
   if (error.fault() == Fault::kInterrupted || control.cancelled()) return SendOutcome::kCancelled;
   const bool later = error.fault() == Fault::kUnavailable || error.fault() == Fault::kBusy ||
                      error.fault() == Fault::kCannotWrite;
-  return later && !printed ? SendOutcome::kNotStarted : SendOutcome::kFailed;
+  return later && !begun ? SendOutcome::kNotStarted : SendOutcome::kFailed;
 }
 
 double now_s() {
@@ -19,10 +25,10 @@ double now_s() {
 }
 
 SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig& printer) {
-  bool printed = false;
+  bool begun = false;
   PrintClock clock;
   const auto listener = [&](const PrintReport& report) {
-    printed = printed || report.done > 0;
+    begun = begun || has_begun(report);
     clock.report(report.state, now_s());
     events.push(SendProgress{order.job, report});
   };
@@ -39,7 +45,7 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
     return {order.job, SendOutcome::kDone, {}, "", clock.printed_s(), clock.paused_s()};
   } catch (const Error& error) {
     return {order.job,
-            outcome_of(error, printed, *order.control),
+            outcome_of(error, begun, *order.control),
             {error.fault(), error.what(), error.hint()},
             ""};
   } catch (const std::exception& error) {
