@@ -53,6 +53,29 @@ TEST(Links, RemainingTimeIsLearned) {
   }
 }
 
+// So that a print that failed is known to have begun, however early that was.
+TEST(Links, PrintingIsToldBeforeAnythingIsSent) {
+  for (const bool gcode : {true, false}) {
+    Marlin marlin(Pace{1, false});
+    Replicator replicator(Pace{1, false});
+    simulated::Firmware& firmware = gcode ? static_cast<simulated::Firmware&>(marlin) : replicator;
+    FaultyPort port(firmware);
+    const std::vector<std::string> lines{"G28", "G1 X20 F1200", "G1 X30 F1200"};
+    PrintControl control;
+    const auto failure = print(port, gcode, gcode ? joined(lines) : x3g_program(100).bytes, control,
+                               [](const PrintReport& report) {
+                                 if (report.state != PrintState::kConnecting)
+                                   throw Error(Fault::kCannotWrite, "no further", "");
+                               });
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->fault(), Fault::kCannotWrite);
+    if (gcode)
+      EXPECT_TRUE(only(port.executed(), lines).empty());
+    else
+      EXPECT_TRUE(port.executed().empty()) << port.executed().front();
+  }
+}
+
 TEST(Links, TemperaturesAreToldAsNumbers) {
   for (const int machine : {0, 1, 2}) {
     MarlinTraits traits;
