@@ -90,21 +90,24 @@ json or_nothing(const json& object, const char* key) {
   return object.is_object() && object.contains(key) ? object[key] : json();
 }
 
+// A file as these clients know it: by its name alone, or by none.
+json named_file(const json& name) {
+  return {{"name", name},
+          {"display", name},
+          {"path", name},
+          {"origin", name.is_null() ? json() : json("local")}};
+}
+
 HttpReply job_state(const DoorCall& call) {
   const json printer = printer_at(call);
   const json job = job_at(call);
   const json& print = printer["print"];
-  const json name = or_nothing(job, "name");
+  json file = named_file(or_nothing(job, "name"));
+  file["size"] = file["date"] = nullptr;
   json completion;
   if (print.is_object()) completion = 100 * print.value("fraction", 0.0);
   return door_reply({{"job",
-                      {{"file",
-                        {{"name", name},
-                         {"display", name},
-                         {"path", name},
-                         {"origin", name.is_null() ? json() : json("local")},
-                         {"size", nullptr},
-                         {"date", nullptr}}},
+                      {{"file", file},
                        {"estimatedPrintTime", nullptr},
                        {"filament", nullptr},
                        {"lastPrintTime", nullptr},
@@ -156,10 +159,10 @@ std::string resource_of(const DoorCall& call, const std::string& name) {
 }
 
 json file_view(const DoorCall& call, const json& job) {
-  const std::string name = job["name"];
-  return {{"name", name},     {"display", name},
-          {"path", name},     {"origin", "local"},
-          {"job", job["id"]}, {"refs", {{"resource", resource_of(call, name)}}}};
+  json file = named_file(job["name"]);
+  file["job"] = job["id"];
+  file["refs"] = {{"resource", resource_of(call, job["name"])}};
+  return file;
 }
 
 HttpReply upload(const DoorCall& call) {
