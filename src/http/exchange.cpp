@@ -158,6 +158,7 @@ MHD_Result Exchange::begin_upload(MHD_Connection* connection, const TakeUpload& 
     return send(connection, refusal(507));
   upload_.emplace(plan.folder, plan.most_bytes, limits_.spare_bytes);
   if (plan.is_form) {
+    names_.emplace(request_.header("Content-Type"));
     form_ = MHD_create_post_processor(connection, kFormBuffer, take_field, this);
     return form_ == nullptr ? send(connection, refusal(400)) : MHD_YES;
   }
@@ -175,7 +176,8 @@ std::uint64_t Exchange::announced() const {
 
 int Exchange::take(std::string_view bytes) {
   if (form_ != nullptr) {
-    const bool understood = MHD_post_process(form_, bytes.data(), bytes.size()) == MHD_YES;
+    const std::string form = names_->pass(bytes);
+    const bool understood = MHD_post_process(form_, form.data(), form.size()) == MHD_YES;
     return understood || status_ != 0 ? status_ : 400;
   }
   if (upload_) return upload_->write(bytes);
@@ -202,7 +204,7 @@ int Exchange::add_to_form(const std::string& key, const char* file, std::string_
     return 0;
   }
   if (offset == 0)
-    if (const int status = upload_->begin(key, file); status != 0) return status;
+    if (const int status = upload_->begin(key, name_of_part(file)); status != 0) return status;
   return upload_->write(bytes);
 }
 

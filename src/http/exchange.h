@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "http/part_names.h"
 #include "http/server.h"
 #include "http/upload.h"
 
@@ -49,6 +50,7 @@ class Exchange {
   std::size_t most_text_ = 0;
   std::optional<Upload> upload_;
   MHD_PostProcessor* form_ = nullptr;
+  std::optional<PartNames> names_;  // with form_
 };
 
 }  // namespace packmerger

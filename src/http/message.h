@@ -17,7 +17,7 @@ namespace packmerger {
 // One file of a form, or the whole body of a PUT, as it lies on the disk now.
 struct UploadedFile {
   std::string field;  // the form's; empty for a whole body
-  std::string name;   // as the client sent it: any bytes, never to be used as a path
+  std::string name;   // as the client calls it: any bytes, never to be used as a path
   std::filesystem::path path;
   std::uint64_t bytes = 0;
 };

@@ -130,6 +130,13 @@ class PrusaSlicer(Doors):
         self.assertEqual((status, headers["Content-Type"]), (422, "text/plain"), "this printer is handed its jobs")
         self.assertIn(b"takes no program", body)
 
+    def test_a_name_with_quotes_in_either_form(self):
+        """libcurl before 7.81 escapes them with a backslash; since then, and in browsers, they are %22."""
+        for name in (b'cube \\"a\\".stl', b"cube %22a%22.stl"):
+            status, content, _ = self.upload(name)
+            self.assertEqual(status, 201, content)
+            self.assertEqual(json.loads(content)["files"]["local"]["name"], 'cube "a".stl')
+
     def test_what_shall_only_be_uploaded_waits(self):
         status, body, _ = self.upload(b"a.stl")
         self.assertEqual(status, 201, body)

@@ -65,6 +65,7 @@ class Attack(Case):
         below = set(program.files_below(self.daemon.folder / "state/folders"))
         for name in (b"../../x.stl", b"/etc/x.stl", b"..\\x.stl", b"%2e%2e%2fx.stl", b".hidden.stl", b"~x.stl", b"$(reboot).stl",
                      b"x\\x00.stl", b"\xff\xfe.stl", b"." * 50 + b".stl", b"a" * 5000 + b".stl", b"x.stl/..", b'part \\"q\\".stl',
+                     b'x\\"/../../y.stl', b'\\"; filename=\\"../../z.stl', b"%22/../../w.stl", b"x%22%2f..%2fv.stl", b'end\\',
                      "‮lts.stl".encode(), b"<img src=x onerror=alert(1)>.stl", b"a\tb.stl", "ü".encode() * 200 + b".stl"):
             for target, fields in (("/api/files/local", wire.octoprint_fields(True, b"../../../etc")),
                                    ("/server/files/upload", [(b"root", b"gcodes"), (b"path", b"/etc"), (b"print", b"true")])):

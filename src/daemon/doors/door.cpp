@@ -62,9 +62,6 @@ std::string door_state(const json& printer) {
 
 HttpReply taken(const DoorCall& call, std::string name, const UploadedFile& file,
                 bool wants_print) {
-  // browsers and curl write a quotation mark so within a form's header
-  for (std::size_t at = name.find("%22"); at != std::string::npos; at = name.find("%22", at))
-    name.replace(at, 3, "\"");
   return call.desk.take(
       {.printer = call.printer, .name = std::move(name), .file = file.path, .held = !wants_print});
 }
