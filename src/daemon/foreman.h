@@ -159,7 +159,7 @@ class Foreman {
   bool may_step(const JobRecord& job) const;
   static Preparer preparer_of(const JobRecord& job);
   bool is_free(Preparer preparer) const;
-  double busy_for_s(const PrinterConfig& printer) const;
+  double busy_for_s(const PrinterConfig& printer, std::int64_t new_job, double like_s) const;
   std::string trouble_at(const PrinterConfig& printer) const;
   void start_comparing(JobRecord job, const PrinterConfig& wish);
   void propose(JobRecord job, const PrinterConfig& wish, const std::vector<PrinterOffer>& offers);

@@ -24,14 +24,23 @@ std::vector<std::string> compare_command(const DaemonConfig& config, const Print
   return argv;
 }
 
+bool is_being_prepared(JobState state) {
+  return state == JobState::kClaiming || state == JobState::kReceived ||
+         state == JobState::kPreparing;
+}
+
 }  // namespace
 
-// For how long the printer is busy with what it prints and with what is ready to be printed there.
-double Foreman::busy_for_s(const PrinterConfig& printer) const {
+// For how long the printer is busy with what it prints and with what is printed there before a new
+// job that takes like_s there. How long those take that are still being prepared, nobody knows yet:
+// as long as the new one.
+double Foreman::busy_for_s(const PrinterConfig& printer, std::int64_t new_job,
+                           double like_s) const {
   double sum_s = 0;
   for (const auto& [id, job] : store_.open_jobs()) {
     if (job.printer != printer.name || job.held || has_ended(job.state)) continue;
     const double left_s = std::max(0.0, job.predicted_s - job.printed_s);
+    if (is_being_prepared(job.state) && id < new_job) sum_s += like_s;
     if (job.state == JobState::kReady || job.state == JobState::kApproved) sum_s += left_s;
     if (job.state != JobState::kSending) continue;
     const LiveJob* running = live(id);
@@ -87,10 +96,10 @@ void Foreman::on(const Compared& event) {
     PrinterOffer offer;
     offer.printer = printer->name;
     offer.profile = printer->abilities.id;
-    offer.waits_s = busy_for_s(*printer);
     offer.trouble = trouble_at(*printer);
     offer.why_not = printable(compared.failure);
     if (offer.fits()) take_estimates(offer, compared.estimates, compared.variant);
+    offer.waits_s = busy_for_s(*printer, event.job, offer.time_s);
     offers.push_back(std::move(offer));
   }
   propose(std::move(*job), *wish, offers);

@@ -174,6 +174,23 @@ TEST(AutoPrinter, TheSoonestCountsWhatIsPrintingAndQueued) {
   EXPECT_EQ(shop.job(3).printer, "sim");
 }
 
+// Models are prepared one after the other, but programs are checked beside them.
+TEST(AutoPrinter, TheSoonestCountsWhatIsStillBeingPrepared) {
+  AutoWorkshop shop(Prefer::kSoonest);
+  shop.drop("real", "before.gcode");
+  ASSERT_TRUE(shop.check_order()) << "and its check takes its time";
+  shop.drop("real", "held.gcode");
+  shop.foreman_->hold(2);
+  shop.drop("any", "a.stl");
+  const PrepareOrder order = shop.prepare_order().value();
+  shop.drop("sim", "behind.stl");
+  shop.compare(order, kFigures);
+  const json printers = shop.view(3).at("choice").at("printers");
+  EXPECT_EQ(printers.at(1).at("waits_s"), 50) << "one, as long as the model itself takes there";
+  EXPECT_EQ(printers.at(2).at("waits_s"), 0) << "what came later waits behind it";
+  EXPECT_EQ(shop.job(3).printer, "sim");
+}
+
 TEST(AutoPrinter, IsApprovedByItselfOnlyWhereBothAreConfiguredSo) {
   for (const auto& [wish, of_printer, expected] :
        {std::tuple{Approve::kAuto, Approve::kAuto, true},
