@@ -17,10 +17,13 @@ struct Arguments {
   DaemonArguments daemon;
   std::int64_t id = 0;
   int limit = 100;
+  std::int64_t before = 0;  // 0: from the newest on
 };
 
 void list(const Arguments& arguments) {
-  const json jobs = ask(arguments.daemon, {{"verb", "jobs.list"}, {"limit", arguments.limit}});
+  json request = {{"verb", "jobs.list"}, {"limit", arguments.limit}};
+  if (arguments.before != 0) request["before"] = arguments.before;
+  const json jobs = ask(arguments.daemon, request);
   if (arguments.daemon.json) return print_json(jobs);
   if (jobs.empty()) return fmt::print("There are no jobs.\n");
   std::vector<std::vector<std::string>> rows = {{"JOB", "PRINTER", "MODEL", "STATE", "STATUS"}};
@@ -175,6 +178,8 @@ void add_jobs(CLI::App& program) {
   list_all->add_option("--limit", arguments->limit, "how many")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  list_all->add_option("--before", arguments->before, "only jobs older than the one of this number")
+      ->check(CLI::PositiveNumber);
   list_all->callback([arguments] { list(*arguments); });
   const auto with_id = [&](CLI::App* one) {
     one->add_option("ID", arguments->id, "the job's number")

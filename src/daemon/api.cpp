@@ -1,5 +1,6 @@
 #include "daemon/api.h"
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -43,7 +44,10 @@ json list_jobs(Foreman& foreman, const json& request) {
   const std::int64_t limit = whole_number(request, "limit", kDefaultJobs);
   if (limit < 1 || limit > kMostJobs) not_understood("limit must be from 1 to 1000");
   json jobs = json::array();
-  for (const JobRecord& job : foreman.store().newest(static_cast<int>(limit)))
+  const std::int64_t before =
+      whole_number(request, "before", std::numeric_limits<std::int64_t>::max());
+  if (before < 1) not_understood("before must be a job's id");
+  for (const JobRecord& job : foreman.store().newest(static_cast<int>(limit), before))
     jobs.push_back(job_view(foreman, job));
   return jobs;
 }

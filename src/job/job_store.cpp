@@ -227,9 +227,9 @@ std::optional<JobRecord> JobStore::find(std::int64_t id) const {
 
 const std::map<std::int64_t, JobRecord>& JobStore::open_jobs() const { return database_->open; }
 
-std::vector<JobRecord> JobStore::newest(int limit) const {
-  Statement rows(database_->connection, select("ORDER BY id DESC LIMIT ?"));
-  rows.bind(std::int64_t{limit});
+std::vector<JobRecord> JobStore::newest(int limit, std::int64_t before) const {
+  Statement rows(database_->connection, select("WHERE id < ? ORDER BY id DESC LIMIT ?"));
+  rows.bind(before).bind(std::int64_t{limit});
   return read_jobs(rows);
 }
 

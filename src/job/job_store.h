@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -101,8 +102,9 @@ class JobStore {
   // Jobs that have not ended, and ended ones whose file is not yet filed, by id. They are at hand
   // in memory, as the database has them; a write changes them.
   const std::map<std::int64_t, JobRecord>& open_jobs() const;
-  // At most `limit` jobs, newest first.
-  std::vector<JobRecord> newest(int limit) const;
+  // At most `limit` jobs whose ids are below `before`, newest first.
+  std::vector<JobRecord> newest(
+      int limit, std::int64_t before = std::numeric_limits<std::int64_t>::max()) const;
   // The newest other job with the same bytes for any printer; 0: none.
   std::int64_t same_bytes(const JobRecord& job) const;
   // The newest such job that came before this one; 0: none.

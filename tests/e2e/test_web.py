@@ -42,6 +42,23 @@ class Use(Case):
             self.assertEqual((status, json.loads(content)["paused"]), (200, verb == "pause"))
         self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/none/pause")[0], 404)
 
+    def test_older_jobs_are_reached(self):
+        ids = []
+        for _ in range(5):
+            ids.insert(0, json.loads(self.daemon.upload()[1])["id"])
+            self.assertEqual(self.daemon.ask("POST", f"/api/v1/jobs/{ids[0]}/cancel")[0], 200)
+        told, before = [], ids[0] + 1
+        while len(told) < len(ids):
+            listed = json.loads(self.daemon.ask("GET", f"/api/v1/jobs?limit=2&before={before}")[1])
+            told += [job["id"] for job in listed]
+            before = told[-1]
+        self.assertEqual(told[:len(ids)], ids)
+        shown = self.daemon.shell("jobs", "list", "--json", "--limit", "2", "--before", str(ids[0]))
+        self.assertEqual([job["id"] for job in json.loads(shown.stdout)], ids[1:3])
+        for wrong in ("0", "-1", "x", "", "99999999999999999999"):
+            self.assertEqual(self.daemon.ask("GET", f"/api/v1/jobs?before={wrong}")[0], 409, wrong)
+        self.assertEqual(self.daemon.shell("jobs", "list", "--before", "0").returncode, 2)
+
     def test_what_cannot_be_taken_is_told(self):
         for upload, expected in ((self.daemon.upload(name=b"a.exe"), 415), (self.daemon.upload(fields=()), 422),
                                  (self.daemon.upload(fields=((b"printer", b"none"),)), 404),

@@ -53,7 +53,7 @@ const filePath = (id: number, file: string): string => `jobs/${id}/files/${encod
 export const jobFile = async (id: number, file: string): Promise<Response> => request(filePath(id, file));
 export const jobReport = (id: number): Promise<Report> => json(filePath(id, 'job.json'));
 export const showJob = (id: number): Promise<Job> => json(`jobs/${id}`);
-export const listJobs = (limit: number): Promise<Job[]> => json(`jobs?limit=${limit}`);
+export const jobsBefore = (id: number, limit: number): Promise<Job[]> => json(`jobs?before=${id}&limit=${limit}`);
 export const uploadRules = (): Promise<UploadRules> => json('uploads');
 
 export type JobVerb = 'approve' | 'hold' | 'cancel' | 'again';

@@ -1,6 +1,6 @@
 // Jobs that have ended, newest first.
 import { useEffect, useState } from 'preact/hooks';
-import { listJobs } from '../daemon/api';
+import { jobsBefore } from '../daemon/api';
 import { hasEnded, type Job } from '../daemon/types';
 import { JobButtons } from '../job/actions';
 import { jobHref } from '../route';
@@ -9,16 +9,21 @@ import { complain } from '../ui/notes';
 import { duration, jobBadge, money, when } from '../words';
 
 const TOLD = 100;   // jobs that the stream tells
-const MOST = 1000;  // that the daemon lists
+const MORE = 200;   // asked for at a time
 
 export function HistoryView({ jobs }: { jobs: Job[] }) {
-  const [older, setOlder] = useState<Job[]>([]);
+  const [seen, setSeen] = useState<Job[]>([]);
   const [words, setWords] = useState('');
-  const oldest = jobs.at(-1)?.id ?? 0;
-  useEffect(() => setOlder((known) => known.filter((job) => job.id < oldest)), [oldest]);
-  const ended = [...jobs, ...older.filter((job) => job.id < oldest)].filter(hasEnded);
+  const [complete, setComplete] = useState(false);
+  const known = merged(seen, jobs);
+  useEffect(() => setSeen((before) => merged(before, jobs)), [jobs]);
+  const ended = known.filter(hasEnded);
+  const showOlder = async () => {
+    const older = await jobsBefore(known.at(-1)?.id ?? 1, MORE);
+    setSeen((before) => merged(before, older));
+    setComplete(older.length < MORE);
+  };
   const shown = ended.filter((job) => fits(job, words));
-  const more = jobs.length >= TOLD && older.length === 0;
   return (
     <section aria-labelledby="history-title">
       <div class="history-head">
@@ -34,14 +39,16 @@ export function HistoryView({ jobs }: { jobs: Job[] }) {
       ) : null}
       {ended.length > 0 && shown.length === 0 ? <Empty title="No such job">Nothing that ended is called so.</Empty> : null}
       <ul class="history">{shown.map((job) => <Row key={job.id} job={job} />)}</ul>
-      {more ? (
-        <Button onClick={() => void listJobs(MOST).then((all) => setOlder(all.filter((job) => job.id < oldest)), complain)}>
-          Show older jobs
-        </Button>
+      {!complete && known.length >= TOLD ? (
+        <Button onClick={() => void showOlder().catch(complain)}>Show older jobs</Button>
       ) : null}
     </section>
   );
 }
+
+// What was seen before stays when newer jobs push it out of the stream; newest first.
+const merged = (seen: Job[], told: Job[]): Job[] =>
+  [...new Map([...seen, ...told].map((job) => [job.id, job])).values()].sort((a, b) => b.id - a.id);
 
 const fits = (job: Job, words: string): boolean =>
   words.toLowerCase().split(/\s+/).every((word) => `${job.name} ${job.printer} ${job.id}`.toLowerCase().includes(word));

@@ -129,6 +129,27 @@ describe('the page', { skip: missing }, () => {
     assert.equal(await page.evaluate(() => window.hit), undefined);
   });
 
+  test('the history goes back to the first job', async () => {
+    const count = 110;
+    for (let i = 0; i < count; i += 1) {
+      const job = await shop.upload('objet', `old-${i}.stl`, STL);
+      await shop.ask(`jobs/${job.id}/cancel`, 'POST');
+    }
+    const page = await browser.visit(shop.base, { view: '#/history', key: shop.key });
+    await until('what the stream tells', async () => (await page.locator('.history > li').count()) === 100);
+    const known = (await shop.ask('jobs?limit=1000')).filter((job) => job.ended_s !== null).map((job) => job.id);
+    const more = page.getByRole('button', { name: 'Show older jobs' });
+    await more.focus();
+    await page.keyboard.press('Enter');
+    await until('all of them', async () => (await page.locator('.history > li').count()) === known.length);
+    assert.deepEqual(await page.locator('.history > li').evaluateAll((rows) => rows.map((row) => Number(row.dataset.job))), known);
+    assert.equal(await more.count(), 0, 'there is nothing older');
+    const late = await shop.upload('objet', 'late.stl', STL);
+    await shop.ask(`jobs/${late.id}/cancel`, 'POST');
+    await until('the new one too, and none is pushed out', async () => (await page.locator('.history > li').count()) === known.length + 1);
+    await assertAccessible(page, 'a long history');
+  });
+
   test('everything is reached by the keyboard alone', async () => {
     const page = await browser.visit(shop.base, { key: shop.key });
     const job = await shop.upload('objet', 'keys.stl', STL);

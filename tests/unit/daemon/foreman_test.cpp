@@ -226,6 +226,7 @@ TEST(Api, AnswersEveryKindOfNonsense) {
        {"", "x", "[]", "1", "{}", R"({"verb": 1})", R"({"verb": "x"})", R"({"verb": "jobs.show"})",
         R"({"verb": "jobs.show", "id": "1"})", R"({"verb": "jobs.show", "id": -1})",
         R"({"verb": "jobs.show", "id": 1e300})", R"({"verb": "jobs.list", "limit": 0})",
+        R"({"verb": "jobs.list", "before": 0})", R"({"verb": "jobs.list", "before": "2"})",
         R"({"verb": "jobs.approve", "id": 1})", R"({"verb": "printers.clear"})",
         R"({"verb": "printers.clear", "name": "../x"})", "\xFF\xFE", "{\"verb\": \"\xFF\"}"}) {
     const json reply = json::parse(answer(*shop.foreman_, shop.keys_, request));
@@ -235,6 +236,8 @@ TEST(Api, AnswersEveryKindOfNonsense) {
   EXPECT_TRUE(
       json::parse(answer(*shop.foreman_, shop.keys_, std::string(60000, '['))).contains("error"));
   EXPECT_EQ(shop.ask({{"verb", "jobs.list"}}).at("result").size(), 1U);
+  EXPECT_EQ(shop.ask({{"verb", "jobs.list"}, {"before", 2}}).at("result").size(), 1U);
+  EXPECT_TRUE(shop.ask({{"verb", "jobs.list"}, {"before", 1}}).at("result").empty());
 }
 
 // What the sender's thread would find at its control.

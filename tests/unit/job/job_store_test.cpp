@@ -237,6 +237,18 @@ TEST(JobStore, OpenJobsAreThoseWithSomethingLeftToDo) {
   EXPECT_EQ(store.newest(10).size(), 1U);
 }
 
+TEST(JobStore, OlderJobsAreReachedPageByPage) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  std::vector<std::int64_t> all;
+  for (int i = 0; i < 7; ++i) all.insert(all.begin(), store.add(sample()).id);
+  std::vector<std::int64_t> told;
+  for (std::vector<JobRecord> page = store.newest(3); !page.empty();
+       page = store.newest(3, page.back().id))
+    for (const JobRecord& job : page) told.push_back(job.id);
+  EXPECT_EQ(told, all);
+}
+
 TEST(JobStore, RecognisesTheSameBytes) {
   const TemporaryFolder folder;
   JobStore store(folder.path() / "jobs.sqlite");
