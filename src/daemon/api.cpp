@@ -16,6 +16,7 @@ using KeyVerb = json (*)(KeyRing&, const json&);
 constexpr int kDefaultJobs = 100;
 constexpr int kMostJobs = 1000;
 constexpr int kMostChoices = 99;
+constexpr std::string_view kDone = R"({"ok":true,"result":)";  // a reply's beginning
 
 [[noreturn]] void not_understood(const std::string& what) {
   throw Error(Fault::kUsage, what, "docs/DAEMON.md lists the requests.");
@@ -43,10 +44,10 @@ std::string name_of(const json& request, const std::string& what = "the printer'
 json list_jobs(Foreman& foreman, const json& request) {
   const std::int64_t limit = whole_number(request, "limit", kDefaultJobs);
   if (limit < 1 || limit > kMostJobs) not_understood("limit must be from 1 to 1000");
-  json jobs = json::array();
   const std::int64_t before =
       whole_number(request, "before", std::numeric_limits<std::int64_t>::max());
   if (before < 1) not_understood("before must be a job's id");
+  json jobs = json::array();
   for (const JobRecord& job : foreman.store().newest(static_cast<int>(limit), before))
     jobs.push_back(job_view(foreman, job));
   return jobs;
@@ -159,17 +160,19 @@ json error_view(Fault fault, const std::string& what, const std::string& hint) {
           {"error", {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}}}};
 }
 
+std::string text_of(const json& view) {
+  return view.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 template <typename Work>
 std::string answered(const Work& work) {
-  json reply;
   try {
-    reply = {{"ok", true}, {"result", work()}};
+    return std::string(kDone) + text_of(work()) + "}";
   } catch (const Error& error) {
-    reply = error_view(error.fault(), error.what(), error.hint());
+    return text_of(error_view(error.fault(), error.what(), error.hint()));
   } catch (const std::exception& error) {
-    reply = error_view(Fault::kInternal, error.what(), "Look into the daemon's messages.");
+    return text_of(error_view(Fault::kInternal, error.what(), "Look into the daemon's messages."));
   }
-  return reply.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -180,6 +183,11 @@ std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request) {
 
 std::string answer_upload(Foreman& foreman, const UploadedJob& upload) {
   return answered([&] { return job_view(foreman, foreman.uploaded(upload)); });
+}
+
+std::optional<std::string_view> result_in(std::string_view reply) {
+  if (!reply.starts_with(kDone)) return std::nullopt;
+  return reply.substr(kDone.size(), reply.size() - kDone.size() - 1);
 }
 
 }  // namespace packmerger

@@ -2,6 +2,7 @@
 // thread and touches nothing but the foreman and the keys.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,5 +18,8 @@ std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request);
 
 // The same for a file that came over the web: the job that it became.
 std::string answer_upload(Foreman& foreman, const UploadedJob& upload);
+
+// The result within either reply, as JSON text; nothing where it tells an error. Refers to `reply`.
+std::optional<std::string_view> result_in(std::string_view reply);
 
 }  // namespace packmerger

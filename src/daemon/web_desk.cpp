@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "daemon/api.h"
 #include "daemon/job_file.h"
 #include "daemon/web_guard.h"
 
@@ -16,14 +17,14 @@ constexpr std::chrono::seconds kPatience(20);
 
 // What the loop answered, as HTTP tells it.
 HttpReply reply_of(const std::string& answer) {
-  const json told = json::parse(answer, nullptr, false);
   HttpReply reply;
-  if (told.value("ok", false)) {
-    reply.body = told["result"].dump() + "\n";
-  } else {
-    reply.status = http_status_of(told["error"].value("fault", 0));
-    reply.body = json{{"error", told["error"]}}.dump() + "\n";
+  if (const std::optional<std::string_view> result = result_in(answer)) {
+    reply.body = std::string(*result) + "\n";
+    return reply;
   }
+  const json told = json::parse(answer, nullptr, false);
+  reply.status = http_status_of(told["error"].value("fault", 0));
+  reply.body = json{{"error", told["error"]}}.dump() + "\n";
   return reply;
 }
 
