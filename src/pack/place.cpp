@@ -25,16 +25,15 @@ auto rank(const Spot& spot) {
 struct Hunt {
   static constexpr std::size_t kMostBlocks = 64;
 
-  explicit Hunt(const TrayState& tray)
-      : pooled(tray.upper),
-        xs(kMostBlocks),
+  Hunt()
+      : xs(kMostBlocks),
         ys(kMostBlocks),
         heights(kMostBlocks * kFallPositions),
         sums(kMostBlocks * kFallPositions) {
     blocks.reserve(kMostBlocks);
   }
 
-  PooledField pooled;
+  std::optional<PooledField> pooled;  // of the tray; made when it is asked for
   std::vector<FallBlock> group_blocks;
   std::vector<HeightCell> group_cells;
   std::vector<Height> group_heights;
@@ -155,10 +154,11 @@ class Scan {
   void bound_groups(Hunt& hunt) {
     const int rows = (ys_.count() + kPool - 1) / kPool;
     hunt.group_heights.assign(static_cast<std::size_t>(rows * group_stride()), 0);
-    if (!hunt.best) return;
+    if (!hunt.best || blocks_of_row() * ys_.count() < kManyBlocks) return;
+    if (!hunt.pooled) hunt.pooled.emplace(tray_.upper);
     hunt.group_cells.clear();
     for (std::size_t i = 0; i < (part_.reach.size() + kCellsOfGroups - 1) / kCellsOfGroups; ++i)
-      hunt.group_cells.push_back(hunt.pooled.cell(part_.reach[i], xs_.first));
+      hunt.group_cells.push_back(hunt.pooled->cell(part_.reach[i], xs_.first));
     hunt.group_blocks.clear();
     int known = highest_;
     for (int row = 0; row < rows; ++row) {
@@ -172,12 +172,12 @@ class Scan {
         known = limit(hunt, xs, ys, known);
         if (known >= 0)
           hunt.group_blocks.push_back(
-              {hunt.pooled.row(y) + group, of_row + group, static_cast<Height>(known)});
+              {hunt.pooled->row(y) + group, of_row + group, static_cast<Height>(known)});
         else
           std::fill_n(of_row + group, kFallPositions, kNoPosition);
       }
     }
-    fall(hunt.group_blocks, hunt.pooled.stride(), hunt.group_cells);
+    fall(hunt.group_blocks, hunt.pooled->stride(), hunt.group_cells);
   }
 
   void add_block(Hunt& hunt, int block, int y) {
@@ -247,6 +247,7 @@ class Scan {
     }
   }
 
+  static constexpr int kManyBlocks = 64;            // with fewer, groups take longer than they save
   static constexpr std::size_t kCellsOfGroups = 8;  // one of so many: the decisive ones
   static constexpr Height kNoPosition = std::numeric_limits<Height>::max();
   static constexpr std::int64_t kMostWaste = std::int64_t{1} << 40;
@@ -280,7 +281,7 @@ std::optional<Spot> best_spot(const TrayState& tray, std::span<const RotatedPart
     if (scan.possible()) order.push_back(&scan);
   std::stable_sort(order.begin(), order.end(),
                    [](const Scan* a, const Scan* b) { return a->bound() < b->bound(); });
-  Hunt hunt(tray);
+  Hunt hunt;
   for (Scan* scan : order)
     if (scan->bound() <= hunt.dearest) scan->run(hunt);
   return hunt.best;

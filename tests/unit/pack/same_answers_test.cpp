@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <tuple>
 
 #include "base/random.h"
 #include "bench/fast_packing.h"
@@ -82,6 +84,41 @@ RC_GTEST_PROP(SameAnswers, AsThePlainLoopsOverTheSameMaps, (std::uint64_t seed))
               a.z == b.z && a.cost == b.cost);
   }
   RC_ASSERT(found.cost == expected.cost);
+}
+
+// Over a large tray groups of positions are bounded together, over a strip of it they are not.
+RC_GTEST_PROP(SameAnswers, AsTheBestOfAllStripsOfALargeTray, (std::uint64_t seed)) {
+  Random random(seed);
+  PackProblem problem = random_problem(random);
+  problem.build_mm = Vec3(160, 96, 60);
+  problem.grid_mm = 1;
+  ReferencePacker reference(problem, Ties::kLowestTop);
+  const std::vector<RotatedPart> rotations =
+      FastPacker(problem, reference.unit_mm()).laid_out(reference.draw({0}));
+  const TraySpec spec{
+      problem.build_mm, {1, reference.unit_mm(), problem.gap_mm, false}, &problem.cost};
+  TrayState tray(spec);
+  for (int i = 0; i < 40; ++i) {
+    const RotatedPart& part = rotations[random.below(rotations.size())];
+    const auto any = [&random](double room_mm) {
+      return static_cast<int>(random.below(static_cast<std::size_t>(room_mm) + 1));
+    };
+    tray.put(part, any(160 - part.box.max().x()), any(96 - part.box.max().y()),
+             static_cast<Height>(any(spec.ceiling() - part.rise)), 0, 1, spec);
+  }
+  std::vector<const RotatedPart*> all;
+  for (const RotatedPart& part : rotations) all.push_back(&part);
+  const auto rank = [](const Spot& spot) {
+    return std::tuple(spot.cost, spot.top, spot.z, spot.y, spot.x, spot.rotation);
+  };
+  std::optional<Spot> expected;
+  for (int y = 0; y < 96; y += 4) {
+    const auto found = best_spot(tray, all, 1, spec, {false, kAllCells, {y, y + 3}});
+    if (found && (!expected || rank(*found) < rank(*expected))) expected = found;
+  }
+  const auto found = best_spot(tray, all, 1, spec);
+  RC_ASSERT(found.has_value() == expected.has_value());
+  if (found) RC_ASSERT(rank(*found) == rank(*expected));
 }
 
 }  // namespace
