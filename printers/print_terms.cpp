@@ -66,28 +66,31 @@ double time_of(const Profile& profile, const PrintTerms& terms) {
       return terms.trays * jet.start_s + terms.layers * jet.layer_s + terms.passes * jet.swath_s +
              terms.passes_mm * jet.per_mm_x_s;
     case TimeTerms::kDeposition:
-      return terms.trays * fdm.start_s +
-             (terms.model_mm3 + terms.support_mm3 * fdm.support_fill_fraction) / 1000 /
-                 fdm.deposition_cm3_h * 3600 +
-             terms.layers * fdm.layer_s;
+      return deposition_s(fdm, terms);
     case TimeTerms::kOther:
       break;
   }
   return terms.trays * fdm.start_s + terms.other_s;
 }
 
+double deposition_s(const FdmSettings& fdm, const PrintTerms& terms) {
+  return terms.trays * fdm.start_s +
+         (terms.model_mm3 + terms.support_mm3 * fdm.support_fill_fraction) / 1000 /
+             fdm.deposition_cm3_h * 3600 +
+         terms.layers * fdm.layer_s;
+}
+
 double model_g_of(const Profile& profile, const PrintTerms& terms) {
   const double waste =
       profile.technology == Technology::kPolyjet ? profile.polyjet.model_waste_factor : 1;
-  return terms.model_mm3 / 1000 * waste * profile.material.model_density_g_cm3;
+  return terms.model_mm3 * waste / 1000 * profile.material.model_density_g_cm3;
 }
 
 double support_g_of(const Profile& profile, const PrintTerms& terms) {
-  const double g_per_cm3 =
-      profile.technology == Technology::kPolyjet
-          ? profile.polyjet.support_g_per_cm3
-          : profile.fdm.support_fill_fraction * profile.material.support_density_g_cm3;
-  return terms.support_mm3 / 1000 * g_per_cm3;
+  if (profile.technology == Technology::kPolyjet)
+    return terms.support_mm3 / 1000 * profile.polyjet.support_g_per_cm3;
+  return terms.support_mm3 * profile.fdm.support_fill_fraction / 1000 *
+         profile.material.support_density_g_cm3;
 }
 
 }  // namespace packmerger

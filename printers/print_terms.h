@@ -37,6 +37,8 @@ PrintTerms print_terms(const Profile& profile, const std::vector<Tray>& trays,
 // What estimate() gives for the same trays, to the rounding, or estimate_by_slicer()'s time.
 // Masses are 0 for kOther: no constant of a profile makes them.
 double time_of(const Profile& profile, const PrintTerms& terms);
+// By deposition rate, also where the profile is sliced.
+double deposition_s(const FdmSettings& fdm, const PrintTerms& terms);
 double model_g_of(const Profile& profile, const PrintTerms& terms);
 double support_g_of(const Profile& profile, const PrintTerms& terms);
 
