@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "daemon/job_folder.h"
+#include "job/correction.h"
 #include "job/load_models.h"
 #include "job/unpacked.h"
 
@@ -16,7 +17,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMostJobs = 1000;
-constexpr double kLongPause_s = 3600;
 constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
 
 [[noreturn]] void refuse(const StatedPrint& print, const std::string& why,

@@ -85,8 +85,8 @@ void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
 }
 
 void Foreman::recover() {
-  const std::map<std::int64_t, JobRecord> open = store_.open_jobs();
-  for (auto [id, job] : open) {
+  std::map<std::int64_t, JobRecord> open = store_.open_jobs();  // which the store then changes
+  for (auto& [id, job] : open) {
     if (job.state == JobState::kClaiming) finish_claim(job);
     if (job.state != JobState::kSending) continue;
     const PrinterConfig* printer = config_.printer(job.printer);

@@ -11,6 +11,9 @@ struct FinishedPrint {
   double printed_s = 0;  // pauses left out
 };
 
+// A print that stood still for this long or longer teaches nothing.
+inline constexpr double kLongPause_s = 3600;
+
 // True time over predicted time.
 struct Correction {
   double factor = 1;

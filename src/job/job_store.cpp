@@ -35,8 +35,6 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr double kLongPause_s = 3600;  // a print that stood still for longer teaches nothing
-
 constexpr std::string_view kColumns =
     "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
     "next_tray, pays, "
