@@ -67,6 +67,7 @@ FrontDesk::~FrontDesk() {
 void FrontDesk::add_to(std::vector<pollfd>& waiting) const {
   waiting.push_back({questions_.fd(), POLLIN, 0});
   waiting.push_back({lines_.fd(), POLLIN, 0});
+  waiting.push_back({events_.fd(), POLLIN, 0});
 }
 
 void FrontDesk::serve(double now_s) {
@@ -136,7 +137,8 @@ void FrontDesk::answer_questions() {
 }
 
 void FrontDesk::publish(double now_s) {
-  if (now_s - published_s_ < kPublishEvery_s || !events_.watched()) return;
+  const bool at_once = events_.take_begun();
+  if ((!at_once && now_s - published_s_ < kPublishEvery_s) || !events_.watched()) return;
   published_s_ = now_s;
   events_.publish(answer(foreman_, keys_, R"({"verb": "state"})"));
 }

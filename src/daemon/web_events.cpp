@@ -12,10 +12,16 @@ constexpr std::chrono::seconds kQuiet(10);
 
 void WebEvents::publish(std::string state) {
   const std::lock_guard lock(mutex_);
-  if (state == state_) return;
+  ++published_;
+  if (state != state_) ++version_;
   state_ = std::move(state);
-  ++version_;
   changed_.notify_all();
+}
+
+bool WebEvents::take_begun() {
+  bool any = false;
+  while (begun_.try_pop()) any = true;
+  return any;
 }
 
 bool WebEvents::watched() const {
@@ -35,13 +41,14 @@ void WebEvents::close() {
   changed_.notify_all();
 }
 
-std::optional<std::string> WebEvents::next(std::uint64_t& seen, std::uint64_t round) {
+std::optional<std::string> WebEvents::next(Reader& reader) {
   std::unique_lock lock(mutex_);
-  const auto has_ended = [&] { return closed_ || round_ != round; };
-  changed_.wait_for(lock, kQuiet, [&] { return has_ended() || version_ > seen; });
+  const auto has_ended = [&] { return closed_ || round_ != reader.round; };
+  const auto has_news = [&] { return published_ > reader.since && version_ > reader.seen; };
+  changed_.wait_for(lock, kQuiet, [&] { return has_ended() || has_news(); });
   if (has_ended()) return std::nullopt;
-  if (version_ == seen) return ": still here\n\n";
-  seen = version_;
+  if (!has_news()) return ": still here\n\n";
+  reader.seen = version_;
   return "event: state\ndata: " + state_ + "\n\n";
 }
 
@@ -53,9 +60,8 @@ std::function<std::optional<std::string>()> WebEvents::stream() {
     const std::lock_guard gone(mutex_);
     --streams_;
   });
-  return [this, watching, seen = std::uint64_t{0}, round = round_]() mutable {
-    return next(seen, round);
-  };
+  begun_.push({});
+  return [this, watching, reader = Reader{published_, round_}]() mutable { return next(reader); };
 }
 
 }  // namespace packmerger

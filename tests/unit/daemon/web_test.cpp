@@ -152,14 +152,26 @@ TEST(WebEvents, TellTheStateNowAndEveryChange) {
   events.publish("1");
   auto stream = events.stream();
   EXPECT_TRUE(events.watched());
-  EXPECT_EQ(stream(), "event: state\ndata: 1\n\n");
   std::thread later([&] { events.publish("2"); });
-  EXPECT_EQ(stream(), "event: state\ndata: 2\n\n");
+  EXPECT_EQ(stream(), "event: state\ndata: 2\n\n") << "what was published before it began is old";
   later.join();
+  events.publish("3");
+  EXPECT_EQ(stream(), "event: state\ndata: 3\n\n");
   events.close();
   EXPECT_EQ(stream(), std::nullopt);
   stream = nullptr;
   EXPECT_FALSE(events.watched());
+}
+
+TEST(WebEvents, AStreamThatBeginsIsToldTheStateAlthoughItIsTheSame) {
+  WebEvents events;
+  EXPECT_FALSE(events.take_begun());
+  events.publish("1");
+  auto stream = events.stream();
+  EXPECT_TRUE(events.take_begun());
+  EXPECT_FALSE(events.take_begun());
+  events.publish("1");
+  EXPECT_EQ(stream(), "event: state\ndata: 1\n\n");
 }
 
 TEST(WebEvents, AreForSoManyPagesAtATime) {
