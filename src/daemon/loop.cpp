@@ -1,6 +1,5 @@
 #include "daemon/loop.h"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/signalfd.h>
@@ -22,6 +21,7 @@
 #include "daemon/reload.h"
 #include "daemon/service_manager.h"
 #include "daemon/socket_server.h"
+#include "daemon/state_lock.h"
 #include "daemon/watch_folder.h"
 
 namespace packmerger {
@@ -30,36 +30,11 @@ namespace {
 using Log = std::function<void(const std::string&)>;
 
 constexpr double kTick_s = 1;
+constexpr double kTakeFor_s = 0.05;  // files of one folder in one turn
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-// Held while the process lives; the kernel lets go of it however the process ends. A record lock:
-// unlike flock's it is not kept by a child that was being started when the daemon was killed.
-class StateLock {
- public:
-  explicit StateLock(const fs::path& state) {
-    const fs::path file = state / "lock";
-    fd_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (fd_ < 0)
-      throw Error(Fault::kCannotWrite, "Cannot write " + file.string(),
-                  "Give the daemon's user the right to write to its state folder.");
-    struct flock whole {};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    if (::fcntl(fd_, F_SETLK, &whole) == 0) return;
-    ::close(fd_);
-    throw Error(Fault::kBusy, "Another packmergerd works in " + state.string(),
-                "End it first, or give this one another state folder.");
-  }
-  StateLock(const StateLock&) = delete;
-  StateLock& operator=(const StateLock&) = delete;
-  ~StateLock() { ::close(fd_); }
-
- private:
-  int fd_ = -1;
-};
 
 // SIGTERM, SIGINT and SIGHUP as something to poll for. Threads started later inherit the mask.
 class Signals {
@@ -95,9 +70,10 @@ class Signals {
 // A printer's folder. One that cannot be watched (a share that is not mounted) is tried again.
 struct Watch {
   PrinterConfig printer;
-  std::unique_ptr<WatchFolder> folder;
+  std::unique_ptr<WatchFolder> folder = {};
+  std::deque<fs::path> whole = {};  // files to take, oldest first
   double retry_s = 0;
-  std::string told;  // the last trouble, told once
+  std::string told = {};  // the last trouble, told once
 };
 
 class Loop {
@@ -113,7 +89,7 @@ class Loop {
         manager_(manager),
         reload_(reload),
         log_(log) {
-    for (const PrinterConfig& printer : config.printers) watches_.push_back({printer, {}, 0, {}});
+    for (const PrinterConfig& printer : config.printers) watches_.push_back({.printer = printer});
   }
 
   void run(Signals& signals) {
@@ -158,7 +134,10 @@ class Loop {
     const WatchConfig rules = config_.watch;
     reload_.read();
     if (rules != config_.watch)
-      for (Watch& watch : watches_) watch.folder.reset();
+      for (Watch& watch : watches_) {
+        watch.folder.reset();
+        watch.whole.clear();
+      }
     manager_.ready();
   }
 
@@ -166,32 +145,46 @@ class Loop {
     for (const std::string& name : reload_.exchange_printers()) {
       std::erase_if(watches_, [&](const Watch& watch) { return watch.printer.name == name; });
       if (const PrinterConfig* printer = config_.printer(name))
-        watches_.push_back({*printer, {}, 0, {}});
+        watches_.push_back({.printer = *printer});
     }
   }
 
   void look_into_folders(double now) {
     for (Watch& watch : watches_) {
       if (watch.retry_s > now) continue;
-      const WatchFolder::Found found = look(watch, now);
-      for (const WatchFolder::Ignored& ignored : found.ignored) tell_ignored(ignored);
-      for (const fs::path& file : found.whole)
-        if (!foreman_.arrived(watch.printer, file))
-          watch.folder->refuse(file, now + config_.retry_s);
+      if (watch.whole.empty()) look(watch, now);
+      take_files(watch);
     }
   }
 
-  WatchFolder::Found look(Watch& watch, double now) {
+  // Thousands may arrive at once, and each is written to the disk several times: the others, and
+  // whoever asks something meanwhile, get their turn.
+  void take_files(Watch& watch) {
+    const double until = now_s() + kTakeFor_s;
+    try {
+      while (!watch.whole.empty() && now_s() < until) {
+        const fs::path file = watch.whole.front();
+        watch.whole.pop_front();
+        if (watch.folder->is_still_whole(file, now_s()) && !foreman_.arrived(watch.printer, file))
+          watch.folder->refuse(file, now_s() + config_.retry_s);
+      }
+    } catch (const Error&) {
+      watch.whole.clear();  // the next look finds them again
+      throw;
+    }
+  }
+
+  void look(Watch& watch, double now) {
     try {
       if (!watch.folder)
         watch.folder = std::make_unique<WatchFolder>(watch.printer.folder, config_.watch);
-      WatchFolder::Found found = watch.folder->look(now);
+      const WatchFolder::Found found = watch.folder->look(now);
       watch.told.clear();
-      return found;
+      for (const WatchFolder::Ignored& ignored : found.ignored) tell_ignored(ignored);
+      watch.whole.assign(found.whole.begin(), found.whole.end());
     } catch (const Error& error) {
       tell(watch.told, error.what() + (". " + error.hint()));
       watch.retry_s = now + config_.retry_s;
-      return {};
     }
   }
 
@@ -214,7 +207,8 @@ class Loop {
     for (const Watch& watch : watches_) {
       if (!watch.folder) continue;
       if (watch.retry_s <= now_s()) waiting.push_back({watch.folder->fd(), POLLIN, 0});
-      until = std::min(until, std::max(watch.folder->next_look_s(), watch.retry_s));
+      const double next_s = watch.whole.empty() ? watch.folder->next_look_s() : 0;
+      until = std::min(until, std::max(next_s, watch.retry_s));
     }
     server_.add_to(waiting);
     desk_.add_to(waiting);

@@ -43,6 +43,10 @@ std::string reason_to_ignore(const struct stat& status) {
   return {};
 }
 
+std::int64_t modified_ns(const struct stat& status) {
+  return std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec;
+}
+
 }  // namespace
 
 bool is_temporary_name(std::string_view name) {
@@ -139,7 +143,7 @@ void WatchFolder::read_folder(double now_s, Found& found) {
     }
     next_look_s_ = std::min(next_look_s_, now_s + kPendingLook_s);
     if (is_ripe(folder_ / name, seen, now_s) && are_settings_ripe(name, now_s))
-      ripe.emplace_back(seen.modified_ns, name);
+      ripe.emplace_back(seen.changed_ns, name);
   }
   std::sort(ripe.begin(), ripe.end());
   for (const auto& [modified_ns, name] : ripe) found.whole.push_back(folder_ / name);
@@ -154,17 +158,31 @@ bool WatchFolder::note_file(const fs::path& path, Seen& seen, double now_s, Foun
     seen.told = true;
     return false;
   }
-  const std::int64_t modified_ns =
-      std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec;
-  if (seen.inode != status.st_ino || seen.size != status.st_size ||
-      seen.modified_ns != modified_ns) {
+  if (!seen.is_of(status)) {
     seen.inode = status.st_ino;
     seen.size = status.st_size;
-    seen.modified_ns = modified_ns;
+    seen.changed_ns = modified_ns(status);
     seen.still_since_s = now_s;
     seen.refused_until_s = 0;
   }
   return true;
+}
+
+bool WatchFolder::Seen::is_of(const struct stat& status) const {
+  return inode == status.st_ino && size == status.st_size && changed_ns == modified_ns(status);
+}
+
+bool WatchFolder::is_as_seen(const fs::path& path) const {
+  struct stat status {};
+  const auto found = seen_.find(path.filename().string());
+  return found != seen_.end() && ::lstat(path.c_str(), &status) == 0 && found->second.is_of(status);
+}
+
+bool WatchFolder::is_still_whole(const fs::path& path, double now_s) const {
+  const std::string name = path.filename().string();
+  return is_as_seen(path) && is_ripe(path, seen_.at(name), now_s) &&
+         (!has_settings_beside(path) || is_as_seen(settings_beside(path))) &&
+         are_settings_ripe(name, now_s);
 }
 
 // A model waits for its settings file while that is still being written.

@@ -2,6 +2,8 @@
 // whole. It only looks; whoever owns the jobs takes the files.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -46,6 +48,9 @@ class WatchFolder {
   // Throws Error{kIo} while the folder cannot be read.
   Found look(double now_s);
 
+  // Whether a file that look() found whole, and the settings beside it, are still as they were.
+  bool is_still_whole(const std::filesystem::path& path, double now_s) const;
+
   // The file could not be taken: it is offered again after retry_s, or once it changed.
   void refuse(const std::filesystem::path& path, double until_s);
 
@@ -56,13 +61,15 @@ class WatchFolder {
   struct Seen {
     std::uint64_t inode = 0;
     std::int64_t size = -1;
-    std::int64_t modified_ns = 0;
+    std::int64_t changed_ns = 0;
     double still_since_s = 0;
     double refused_until_s = 0;
     bool closed = false;  // its writer closed it, or it was moved here
     bool told = false;    // that it is ignored
+    bool is_of(const struct stat& status) const;
   };
 
+  bool is_as_seen(const std::filesystem::path& path) const;
   void set_watch();
   bool read_events();
   void read_folder(double now_s, Found& found);

@@ -23,6 +23,7 @@ struct JobStore::Database {
   Connection connection;
   Listener listener;
   std::map<std::int64_t, JobRecord> open;
+  std::map<std::string, PrinterRecord> printers;
   explicit Database(const std::filesystem::path& file) : connection(file) {}
 
   void written(const JobRecord& job) {
@@ -165,6 +166,13 @@ JobStore::JobStore(const std::filesystem::path& file)
   bring_up_to_date(connection, file);
   Statement rows(connection, select("WHERE ended_s = 0 OR filing_done = 0"));
   while (rows.step()) database_->written(read_job(rows));
+  Statement printers(connection, "SELECT name, bed_clear, paused FROM printer");
+  while (printers.step()) {
+    PrinterRecord printer{printers.text()};
+    printer.bed_clear = printers.flag();
+    printer.paused = printers.flag();
+    database_->printers.insert_or_assign(printer.name, printer);
+  }
 }
 
 JobStore::JobStore(JobStore&&) noexcept = default;
@@ -202,6 +210,7 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
   if (printer != nullptr) write_printer(connection, *printer);
   transaction.commit();
   database_->written(job);
+  if (printer != nullptr) database_->printers.insert_or_assign(printer->name, *printer);
   if (is_told && database_->listener) database_->listener(job, note);
 }
 
@@ -272,18 +281,15 @@ std::vector<FinishedPrint> JobStore::finished_prints(const std::string& printer,
 }
 
 PrinterRecord JobStore::printer(const std::string& name) const {
-  Statement row(database_->connection, "SELECT bed_clear, paused FROM printer WHERE name = ?");
-  PrinterRecord printer{name};
-  if (!row.bind(name).step()) return printer;
-  printer.bed_clear = row.flag();
-  printer.paused = row.flag();
-  return printer;
+  const auto found = database_->printers.find(name);
+  return found == database_->printers.end() ? PrinterRecord{name} : found->second;
 }
 
 void JobStore::save(const PrinterRecord& printer) {
   Transaction transaction(database_->connection);
   write_printer(database_->connection, printer);
   transaction.commit();
+  database_->printers.insert_or_assign(printer.name, printer);
 }
 
 }  // namespace packmerger

@@ -134,6 +134,19 @@ TEST_F(PackmergerdTest, CancellingAPrintStopsIt) {
   EXPECT_EQ(end(SIGTERM).code, 0);
 }
 
+TEST_F(PackmergerdTest, AnswersWhileManyFilesArriveAtOnce) {
+  constexpr std::size_t kFiles = 600;
+  configure("/nonexistent/port");
+  fs::create_directories(path("state/folders/o"));
+  for (std::size_t i = 0; i < kFiles; ++i) drop("o", "m" + std::to_string(i) + ".stl");
+  start();
+  const auto count = [&] { return ask({{"verb", "jobs.list"}, {"limit", 1000}}).size(); };
+  std::set<std::size_t> told;
+  EXPECT_TRUE(wait_until([&] { return *told.insert(count()).first == kFiles; })) << messages();
+  EXPECT_GE(told.size(), 4u) << "asked between one file and the next, not after the last";
+  EXPECT_EQ(end(SIGTERM).code, 0);
+}
+
 TEST_F(PackmergerdTest, OneStateFolderOneDaemon) {
   configure("/nonexistent/port");
   start();

@@ -270,6 +270,30 @@ TEST_F(WatchFolderTest, ManyAtOnceOldestFirst) {
   EXPECT_EQ(names.front(), "m777.stl");
 }
 
+TEST_F(WatchFolderTest, WhatWasWholeMayNotBeAnyMore) {
+  const auto is_still = [&](const char* name) {
+    return watch_->is_still_whole(path(name), now_s_);
+  };
+  for (const char* name :
+       {"same.stl", "rewritten.stl", "open.stl", "gone.stl", "settings.stl", "late.stl"})
+    write(path(name), binary_stl(3));
+  write(path("settings.stl.toml"), "scale = 2\n");
+  look();
+  ASSERT_THAT(look(1.1), SizeIs(6));
+  for (const char* name : {"same.stl", "rewritten.stl", "settings.stl"})
+    EXPECT_TRUE(is_still(name));
+  now_s_ += 5;
+  write(path("rewritten.stl"), binary_stl(2));
+  const std::ofstream writer(path("open.stl"), std::ios::app);
+  fs::remove(path("gone.stl"));
+  write(path("settings.stl.toml"), "scale = 30\n");
+  write(path("late.stl.toml"), "scale = 2\n");
+  EXPECT_TRUE(is_still("same.stl"));
+  for (const char* name :
+       {"rewritten.stl", "open.stl", "gone.stl", "settings.stl", "late.stl", "never.stl"})
+    EXPECT_FALSE(is_still(name)) << name;
+}
+
 TEST_F(WatchFolderTest, IgnoresWhatIsNoFileAndSaysSoOnce) {
   fs::create_symlink("/etc/passwd", path("link.stl"));
   fs::create_symlink("nowhere", path("dangling.stl"));
