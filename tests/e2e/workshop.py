@@ -117,13 +117,15 @@ class Workshop:
 
     def jobs(self):
         """All of them; an ended one whose file was filed is asked for once."""
-        newest = {job["id"]: job for job in self.ask("jobs.list", limit=MOST_LISTED)}
-        if len(newest) == MOST_LISTED:
-            for number in range(1, min(newest)):
-                if number not in self.settled and (reply := self.reply("jobs.show", id=number))["ok"]:
-                    newest[number] = reply["result"]
-        self.settled.update({number: job for number, job in newest.items() if job["state"] in ENDED and job["filed"]})
-        return list({**self.settled, **newest}.values())
+        listed, before = {}, None
+        while before is None or any(number not in self.settled for number in range(1, before)):
+            page = self.ask("jobs.list", limit=MOST_LISTED, **({} if before is None else {"before": before}))
+            listed.update({job["id"]: job for job in page})
+            if len(page) < MOST_LISTED:
+                break
+            before = page[-1]["id"]
+        self.settled.update({number: job for number, job in listed.items() if job["state"] in ENDED and job["filed"]})
+        return list({**self.settled, **listed}.values())
 
     def drop(self, printer, name, text):
         """As a careful program does it: under a name that is left alone, then renamed."""
@@ -134,10 +136,10 @@ class Workshop:
 
     def wait_for(self, holds, patience_s=120, told=None):
         end = time.monotonic() + patience_s
-        while time.monotonic() < end:
+        while (begun := time.monotonic()) < end:
             if holds():
                 return
-            time.sleep(0.05)
+            time.sleep(max(0.05, 4 * (time.monotonic() - begun)))  # so that the daemon has time for other things
         self.test.fail(f"it did not happen: {told() if told else [j for j in self.jobs() if j['state'] not in ENDED][:3]}; {self.log()}")
 
     def wait_until_all_ended(self, count, patience_s=120):
