@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostJobs = 1000;
+constexpr std::size_t kJobsAsked = 1000;  // at a time: the most that the daemon tells
 constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
 
 [[noreturn]] void refuse(const StatedPrint& print, const std::string& why,
@@ -102,12 +102,24 @@ PrintTerms terms_of_model(const Profile& profile, const StatedPrint& print, Warn
   return print_terms(profile, trays_of(*standing), progress);
 }
 
+// Every job of the daemon, newest first.
+std::vector<json> all_jobs(const DaemonArguments& daemon) {
+  std::vector<json> jobs;
+  json request = {{"verb", "jobs.list"}, {"limit", kJobsAsked}};
+  for (;;) {
+    const json page = ask(daemon, request);
+    jobs.insert(jobs.end(), page.begin(), page.end());
+    if (page.size() < kJobsAsked) return jobs;
+    request["before"] = jobs.back().at("id");
+  }
+}
+
 }  // namespace
 
 std::vector<StatedPrint> prints_of_daemon(const Profile& profile, const DaemonArguments& daemon,
                                           const std::string& printer, Warnings& warnings) {
   std::vector<StatedPrint> prints;
-  for (const json& job : ask(daemon, {{"verb", "jobs.list"}, {"limit", kMostJobs}})) {
+  for (const json& job : all_jobs(daemon)) {
     const bool wanted = printer.empty() ? text_of(job, "profile") == profile.id
                                         : text_of(job, "printer") == printer;
     const json printed = job.value("printed_s", json());

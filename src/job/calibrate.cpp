@@ -23,15 +23,17 @@ using Seen = std::optional<double> CalibrationPrint::*;
 using Predict = double (*)(const Profile&, const PrintTerms&);
 
 struct Quantity {
-  const char* name;
+  const char* name;   // for programs
+  const char* words;  // for people
   const char* unit;
   Seen seen;
   Predict predict;
 };
 
-constexpr Quantity kTime{"time", "s", &CalibrationPrint::time_s, time_of};
-constexpr Quantity kModel{"model", "g", &CalibrationPrint::model_g, model_g_of};
-constexpr Quantity kSupport{"support", "g", &CalibrationPrint::support_g, support_g_of};
+constexpr Quantity kTime{"time", "time", "s", &CalibrationPrint::time_s, time_of};
+constexpr Quantity kModel{"model", "model material", "g", &CalibrationPrint::model_g, model_g_of};
+constexpr Quantity kSupport{"support", "support material", "g", &CalibrationPrint::support_g,
+                            support_g_of};
 
 struct BoundKey {
   double* value = nullptr;
@@ -118,7 +120,7 @@ double six_digits(double value) {
 }
 
 void take_over(Profile& profile, const FitTask& task, const std::vector<FittedUnknown>& fitted,
-               int prints, const char* quantity, std::vector<CalibratedConstant>& constants) {
+               int prints, const Quantity& quantity, std::vector<CalibratedConstant>& constants) {
   std::vector<FitUnknown> unknowns = task.main;
   unknowns.insert(unknowns.end(), task.extra.begin(), task.extra.end());
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
@@ -126,7 +128,7 @@ void take_over(Profile& profile, const FitTask& task, const std::vector<FittedUn
     const FittedUnknown& one = fitted[j];
     CalibratedConstant told{unknowns[j].key, key.unit, *key.value,         *key.value, one.fitted,
                             one.at_limit,    prints,   one.standard_error, one.why};
-    if (prints == 0) told.why = fmt::format("held: no print tells its {}", quantity);
+    if (prints == 0) told.why = fmt::format("held: no print tells its {}", quantity.words);
     if (one.fitted) {
       const bool is_rate = unknowns[j].key == kRate;
       const double value = is_rate ? rate_from(one.value) : one.value;
@@ -169,10 +171,10 @@ class Fit {
       else
         warn("nothing_predicted",
              fmt::format("{}: no {} is predicted for it at all, so it teaches nothing of that",
-                         print.name, quantity.name));
+                         print.name, quantity.words));
     }
-    take_over(result_.profile, task, fit_task(task, rows), static_cast<int>(rows.size()),
-              quantity.name, result_.constants);
+    take_over(result_.profile, task, fit_task(task, rows), static_cast<int>(rows.size()), quantity,
+              result_.constants);
   }
 
   void fit_material(const Quantity& quantity, const std::string& key) {
@@ -186,9 +188,9 @@ class Fit {
     if (!told) return;
     const char* from = result_.profile.is_sliced() ? "the slicer" : "volume and density";
     warn("no_such_constant",
-         fmt::format("what is told of {} material is not used: {} alone tell it here, no constant "
+         fmt::format("what is told of {} is not used: {} alone tell it here, no constant "
                      "of the profile",
-                     quantity.name, from));
+                     quantity.words, from));
   }
 
   void warn(const char* code, const std::string& text) { result_.warnings.push_back({code, text}); }
@@ -246,7 +248,7 @@ void judge(Calibration& calibration, const Profile& before, const Quantity& quan
       calibration.warnings.push_back(
           {"far_off", fmt::format("{}: its {} is {:.3g} times what the profile predicts; check its "
                                   "size and what was typed",
-                                  misfit.print, quantity.name, ratio)});
+                                  misfit.print, quantity.words, ratio)});
     fit.prints.push_back(misfit);
   }
   if (fit.prints.empty()) return;

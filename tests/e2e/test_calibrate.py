@@ -148,7 +148,8 @@ class Stated(unittest.TestCase):
         self.assertAlmostEqual(found["polyjet.swath_s"]["after"] / found["polyjet.swath_s"]["before"], ratio, delta=1e-5)
         self.assertIn("one factor", found["polyjet.layer_s"]["why"])
         self.assertIsNone(found["polyjet.layer_s"]["standard_error"])
-        self.assertIn("no print tells its support", found["polyjet.support_g_per_cm3"]["why"])
+        self.assertIn("no print tells its support material", found["polyjet.support_g_per_cm3"]["why"])
+        self.assertIn("no print tells its model material", found["polyjet.model_waste_factor"]["why"])
 
     def test_wrong_usage(self):
         one = ("--print", self.folder / "sphere.stl", "--size", "40")
