@@ -1,8 +1,10 @@
 #include "daemon/job_folder.h"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 
@@ -13,6 +15,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
 constexpr int kMaxTrays = 10000;
+constexpr double kSameCost = 0.005;  // less does not show in a price
 
 json read_report(const fs::path& folder) {
   const fs::path file = folder / "job.json";
@@ -49,6 +52,19 @@ std::optional<double> cost_of(const json& estimates, const std::string& way) {
   const auto cost = estimate->find("cost");
   if (cost == estimate->end() || !cost->is_number()) return std::nullopt;
   return cost->get<double>();
+}
+
+struct UnpackedWay {
+  std::string words;  // "hollow"; empty: none fits
+  double cost = 0;
+};
+
+UnpackedWay cheapest_unpacked(const json& ways) {
+  UnpackedWay best{"", std::numeric_limits<double>::infinity()};
+  for (const auto& [way, words] :
+       {std::pair{"solid", "solid"}, {"hollow", "hollow"}, {"as_is", "as its file stands"}})
+    if (const auto cost = cost_of(ways, way); cost && *cost < best.cost) best = {words, *cost};
+  return best;
 }
 
 }  // namespace
@@ -89,16 +105,24 @@ bool packing_pays(const PreparedJob& job) {
   if (job.variant != "packed" || !ways.is_object()) return false;
   const std::optional<double> packed = cost_of(ways, "packed");
   if (!packed) return false;
-  for (const char* way : {"as_is", "solid", "hollow"}) {
-    const std::optional<double> other = cost_of(ways, way);
-    if (other && *other <= *packed) return false;
-  }
-  return true;
+  return cheapest_unpacked(ways).cost > *packed;
 }
 
 std::string doubt_about(const PreparedJob& job) {
   if (job.variant == kProgramVariant) return job.warning;
-  return packing_pays(job) ? "" : "packing does not pay";
+  if (packing_pays(job)) return {};
+  const json ways = json::parse(job.estimates, nullptr, false);
+  const std::optional<double> packed = ways.is_object() ? cost_of(ways, "packed") : std::nullopt;
+  const auto [way, cost] = cheapest_unpacked(ways);
+  if (job.variant != "packed")
+    return packed && cost <= *packed ? "prepared " + job.variant + ": packing does not pay"
+                                     : "prepared " + job.variant + ", not packed";
+  const bool in_one_piece = packed && estimate_of(ways, "packed")->value("parts", 0) == 1;
+  const std::string doubt =
+      in_one_piece ? "it is in one piece, with nothing to pack" : "packing does not pay";
+  if (!packed || way.empty()) return doubt;
+  if (cost < *packed - kSameCost) return doubt + ": " + way + " it costs less";
+  return in_one_piece ? doubt : doubt + ": " + way + " it costs as little";
 }
 
 fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,

@@ -36,8 +36,9 @@ Profile read_prepared_profile(const fs::path& folder);
 // when nothing else fits.
 bool packing_pays(const PreparedJob& job);
 
-// Why somebody should look at the job before it is printed: a model whose packing does not pay, a
-// program with a warning. Empty: nothing speaks against printing it.
+// Why somebody should look at the job before it is printed: a model whose packing does not pay (and
+// what does), or that was prepared another way; a program with a warning. Empty: nothing speaks
+// against printing it.
 std::string doubt_about(const PreparedJob& job);
 
 // "program.gcode", "program-2.x3g", "tray-2.stl": a tray's file in the job folder.

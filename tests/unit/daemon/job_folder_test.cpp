@@ -1,5 +1,6 @@
 #include "daemon/job_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -76,6 +77,35 @@ TEST(PackingPays, OnlyWhenEveryOtherWayThatFitsIsDearer) {
   EXPECT_TRUE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": false}})", "packed"));
   for (const char* text : {"", "[]", "{}", R"({"packed": null})", R"({"packed": {"fits": true}})"})
     EXPECT_FALSE(pays(text, "packed")) << text;
+}
+
+TEST(Doubt, SaysWhatWasComparedAndChosen) {
+  const auto doubt = [](const std::string& variant, double packed, double solid, double hollow,
+                        int parts) {
+    PreparedJob job;
+    job.variant = variant;
+    job.estimates = fmt::format(
+        R"({{"packed": {{"fits": true, "cost": {}, "parts": {}}}, "as_is": {{"fits": false}},
+           "solid": {{"fits": true, "cost": {}}}, "hollow": {{"fits": true, "cost": {}}}}})",
+        packed, parts, solid, hollow);
+    return doubt_about(job);
+  };
+  EXPECT_EQ(doubt("packed", 5, 7, 6, 4), "");
+  EXPECT_EQ(doubt("packed", 7, 7, 6, 4), "packing does not pay: hollow it costs less");
+  EXPECT_EQ(doubt("packed", 7, 6, 8, 4), "packing does not pay: solid it costs less");
+  EXPECT_EQ(doubt("packed", 7, 6.998, 8, 4), "packing does not pay: solid it costs as little");
+  EXPECT_EQ(doubt("packed", 7, 7, 8, 1), "it is in one piece, with nothing to pack");
+  EXPECT_EQ(doubt("packed", 7, 8, 6, 1),
+            "it is in one piece, with nothing to pack: hollow it costs less");
+  EXPECT_EQ(doubt("solid", 5, 7, 6, 4), "prepared solid, not packed") << "it would have paid";
+  EXPECT_EQ(doubt("hollow", 7, 8, 6, 4), "prepared hollow: packing does not pay");
+  PreparedJob job;
+  job.variant = "hollow";
+  job.estimates = R"({"packed": {"fits": false}, "hollow": {"fits": true, "cost": 5}})";
+  EXPECT_EQ(doubt_about(job), "prepared hollow, not packed") << "it could not be packed";
+  job.variant = kProgramVariant;
+  job.warning = "a move leaves the build volume";
+  EXPECT_EQ(doubt_about(job), job.warning);
 }
 
 TEST(HandOver, PutsTheDocumentReportAndPictureWhole) {
