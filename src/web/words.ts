@@ -56,6 +56,10 @@ export function when(unix_s: number): string {
   return `${date.toLocaleDateString(undefined, { day: 'numeric', month: 'short', year: 'numeric' })}, ${time}`;
 }
 
+// The daemon's phrases as sentences.
+export const sentence = (text: string): string =>
+  (text === '' ? '' : `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!?…]$/.test(text) ? '' : '.'}`);
+
 export const count = (number: number, one: string): string => `${number} ${one}${number === 1 ? '' : 's'}`;
 
 export type Tone = 'calm' | 'busy' | 'good' | 'attention' | 'bad';

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
-import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent } from '../../src/web/words';
-import type { Job } from '../../src/web/daemon/types';
+import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence } from '../../src/web/words';
+import { ownEstimate, type Job } from '../../src/web/daemon/types';
 
 const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
 
@@ -26,6 +26,18 @@ test('figures', () => {
   expect(money(9.7, 'no currency')).toBe('9.70');
   expect([count(1, 'job'), count(0, 'job')]).toEqual(['1 job', '0 jobs']);
   expect(['tool', 'tool 1', 'bed', 'lid'].map(heaterName)).toEqual(['Nozzle', 'Nozzle 1', 'Bed', 'lid']);
+});
+
+test('phrases of the daemon become sentences', () => {
+  expect(['', 'packing does not pay', 'It did not answer.', 'why?'].map(sentence)).toEqual(
+    ['', 'Packing does not pay.', 'It did not answer.', 'Why?']);
+});
+
+test('what a job takes is what was prepared of it', () => {
+  const estimates = { as_is: { cost: 1 }, solid: { cost: 2 }, packed: { cost: 3 } };
+  const cost = (variant: string) => ownEstimate({ variant, estimates } as unknown as Job)?.cost;
+  expect(['solid', 'packed', 'program', 'hollow'].map(cost)).toEqual([2, 3, 1, undefined]);
+  expect(ownEstimate({ variant: '', estimates: null } as unknown as Job)).toBeUndefined();
 });
 
 test('a held job says so before anything else, and a printing one how it prints', () => {

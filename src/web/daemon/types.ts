@@ -73,6 +73,7 @@ export interface Job {
   progress: (Partial<Print> & { stage: string; fraction: number }) | null;
   trays: number;
   tray: number;
+  variant: Exclude<Way, 'as_is'> | 'program' | '';  // what was prepared; '' before, and in old jobs
   pays: boolean;
   estimates: Estimates | null;
   reason: string;
@@ -146,4 +147,8 @@ export const isPacked = (report: Report): report is PackedReport =>
   (report.parts?.length ?? 0) > 0 && report.removal_order !== undefined;
 
 const ENDED: readonly JobState[] = ['done', 'handed_over', 'failed', 'cancelled'];
+// Of what was prepared. A program says what it takes itself, as it is.
+export const ownEstimate = ({ variant, estimates }: Job): Estimate | undefined =>
+  estimates?.[variant === 'program' ? 'as_is' : variant || 'packed'];
+
 export const hasEnded = (job: Job): boolean => ENDED.includes(job.state);

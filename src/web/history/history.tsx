@@ -1,12 +1,12 @@
 // Jobs that have ended, newest first.
 import { useEffect, useState } from 'preact/hooks';
 import { jobsBefore } from '../daemon/api';
-import { hasEnded, type Job } from '../daemon/types';
+import { hasEnded, ownEstimate, type Job } from '../daemon/types';
 import { JobButtons } from '../job/actions';
 import { jobHref } from '../route';
 import { Badge, Button, Empty } from '../ui/bits';
 import { complain } from '../ui/notes';
-import { duration, jobBadge, money, when } from '../words';
+import { duration, jobBadge, money, sentence, when } from '../words';
 
 const TOLD = 100;   // jobs that the stream tells
 const MORE = 200;   // asked for at a time
@@ -54,9 +54,9 @@ const fits = (job: Job, words: string): boolean =>
   words.toLowerCase().split(/\s+/).every((word) => `${job.name} ${job.printer} ${job.id}`.toLowerCase().includes(word));
 
 function Row({ job }: { job: Job }) {
-  const packed = job.estimates?.packed;
-  const took = job.state === 'done' && job.sending_s && job.ended_s ? duration(job.ended_s - job.sending_s) : '';
-  const cost = packed?.fits && packed.cost !== null ? money(packed.cost, packed.currency) : '';
+  const own = ownEstimate(job);
+  const took = job.state === 'done' && job.printed_s !== null ? duration(job.printed_s) : '';
+  const cost = own?.fits && own.cost !== null ? money(own.cost, own.currency) : '';
   const ended = job.ended_s ? when(job.ended_s) : '';
   return (
     <li class="card row ended" data-job={job.id}>
@@ -66,7 +66,7 @@ function Row({ job }: { job: Job }) {
           <Badge badge={jobBadge(job)} />
         </div>
         <p class="quiet-text">{[`Job ${job.id} on ${job.printer}`, ended, took, cost].filter(Boolean).join(' · ')}</p>
-        {job.state === 'failed' ? <p class="reason"><strong>{job.reason}</strong> {job.hint}</p> : null}
+        {job.state === 'failed' ? <p class="reason"><strong>{sentence(job.reason)}</strong> {job.hint}</p> : null}
       </div>
       <JobButtons job={job} />
     </li>

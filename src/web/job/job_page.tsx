@@ -13,7 +13,7 @@ import type { Known } from '../store';
 import { Badge, Bar, Empty } from '../ui/bits';
 import { Icon } from '../ui/icons';
 import { complain } from '../ui/notes';
-import { duration, jobBadge, nextStep, progressText, when } from '../words';
+import { duration, jobBadge, nextStep, progressText, sentence, when } from '../words';
 
 // The job as the stream tells it, with the history that only a question brings.
 function useJob(id: number, known: Known): Job | Refusal | null {
@@ -70,7 +70,8 @@ const own = ({ as_is }: Estimates): Estimates => (as_is ? { as_is } : {});
 function Head({ job, report }: { job: Job; report: Report | null }) {
   const size = report?.inputs[0]?.size_mm?.map((mm) => Math.round(mm)).join(' × ');
   const next = nextStep(job);
-  const cheaper = job.state === 'ready' ? cheaperWay(job.estimates, report?.variant ?? '') : '';
+  // of a packed job the reason tells it
+  const cheaper = job.state === 'ready' && job.variant !== 'packed' ? cheaperWay(job.estimates, job.variant) : '';
   return (
     <section class={`card job-head ${jobBadge(job).tone}`} aria-labelledby="job-title">
       <div class="card-head">
@@ -85,7 +86,7 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
         {job.again_of ? <> · again of <a href={jobHref(job.again_of)}>job {job.again_of}</a></> : null}
       </p>
       {job.progress ? <Progress job={job} /> : null}
-      {job.reason ? <p class="reason"><strong>{job.reason}</strong> {job.hint}</p> : null}
+      {job.reason ? <p class="reason"><strong>{sentence(job.reason)}</strong> {job.hint}</p> : null}
       {next ? <p>{next}</p> : null}
       {cheaper ? <p>It would cost less printed {cheaper}; the table below shows by how much.</p> : null}
       {job.state === 'handed_over' ? <p>Open it in the printer’s own software.</p> : null}

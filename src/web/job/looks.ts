@@ -42,12 +42,15 @@ export function wayOut(report: PackedReport, id: number): string {
   return `moved ${moves.join(', then ')}, then lifted`;
 }
 
+export const trayCount = (report: PackedReport): number => new Set(report.parts.map((part) => part.tray)).size;
+
 export function stepInWords(report: PackedReport, taken: number): string {
   const order = report.removal_order;
   const id = order[taken - 1];
-  if (id === undefined) return `All ${order.length} parts are on the tray.`;
-  const left = order.length - taken;
-  return `Step ${taken} of ${order.length}: part ${id}, ${wayOut(report, id)}.${left === 0 ? ' The tray is empty.' : ''}`;
+  const several = trayCount(report) > 1;
+  if (id === undefined) return `All ${order.length} parts are on the tray${several ? 's' : ''}.`;
+  const empty = several ? ' The trays are empty.' : ' The tray is empty.';
+  return `Step ${taken} of ${order.length}: part ${id}, ${wayOut(report, id)}.${taken === order.length ? empty : ''}`;
 }
 
 export function ordinal(number: number): string {

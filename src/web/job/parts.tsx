@@ -1,5 +1,5 @@
 // The parts as a list: chosen here or in the scenes, and what is known of the chosen one.
-import { ordinal, wayOut } from './looks';
+import { ordinal, trayCount, wayOut } from './looks';
 import type { PackedReport } from '../daemon/types';
 
 interface Props {
@@ -33,10 +33,9 @@ function about(report: PackedReport, id: number | null): string {
   if (part === undefined) return 'Choose a part here or in a picture to see where it belongs. Escape lets go of it.';
   const place = report.removal_order.indexOf(part.id) + 1;
   const glued = part.neighbours.map((one) => one.id);
-  const trays = new Set(report.parts.map((one) => one.tray)).size;
   return [
     `Part ${part.id}: ${(part.volume_mm3 / 1000).toLocaleString('en', { maximumFractionDigits: 1 })} cm³`,
-    trays > 1 ? `on tray ${part.tray}` : '',
+    trayCount(report) > 1 ? `on tray ${part.tray}` : '',
     `taken out ${ordinal(place)}, ${wayOut(report, part.id)}`,
     glued.length > 0 ? `glued to ${glued.length === 1 ? 'part' : 'parts'} ${glued.join(', ')}` : 'not glued to any other',
   ].filter(Boolean).join('; ') + '.';

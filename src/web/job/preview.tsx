@@ -32,5 +32,5 @@ export function Preview({ job }: { job: Job }) {
     };
   }, [job.folder]);
   if (url === '') return <span class="no-picture"><Icon name="cube" /></span>;
-  return <img class="picture" src={url} alt={`${job.name}: the model, and its parts packed on the tray`} />;
+  return <img class="picture" src={url} alt={`${job.name}: the model, and what lies on the tray`} />;
 }

@@ -1,6 +1,6 @@
 // The model and the packed tray side by side. three.js is loaded here, and only here.
 import { useEffect, useRef, useState } from 'preact/hooks';
-import { modelLooks, stepInWords, trayLooks } from './looks';
+import { modelLooks, stepInWords, trayCount, trayLooks } from './looks';
 import { Parts } from './parts';
 import { Preview } from './preview';
 import { jobFile, Refusal } from '../daemon/api';
@@ -67,6 +67,8 @@ export function Views({ job, report }: { job: Job; report: PackedReport }) {
   const letGo = (event: KeyboardEvent): void => {
     if (event.key === 'Escape') setChosen(null);
   };
+  const alone = report.parts.length === 1;
+  const trayTitle = `${report.variant === 'packed' && !alone ? 'Packed tray' : 'Tray'}${trayCount(report) > 1 ? 's' : ''}`;
   const keys = 'Arrow keys turn it, plus and minus zoom, Home goes back.';
   return (
     <section class="card views" aria-labelledby="views-title" onKeyDown={letGo}>
@@ -76,22 +78,26 @@ export function Views({ job, report }: { job: Job; report: PackedReport }) {
       ) : (
         <div class={`scenes ${standing}`} aria-busy={standing === 'loading'}>
           <figure>
-            <canvas ref={modelCanvas} tabIndex={0} role="img" aria-label={`The assembled model. ${keys}`} />
-            <figcaption>Assembled model</figcaption>
+            <canvas ref={modelCanvas} tabIndex={0} role="img" aria-label={`The ${alone ? '' : 'assembled '}model. ${keys}`} />
+            <figcaption>{alone ? 'Model' : 'Assembled model'}</figcaption>
           </figure>
           <figure>
-            <canvas ref={trayCanvas} tabIndex={0} role="img" aria-label={`The packed tray. ${keys}`} />
-            <figcaption>{report.variant === 'packed' ? 'Packed tray' : 'Tray'}</figcaption>
+            <canvas ref={trayCanvas} tabIndex={0} role="img" aria-label={`${trayTitle}. ${keys}`} />
+            <figcaption>{trayTitle}</figcaption>
           </figure>
         </div>
       )}
-      <div class="unpack">
-        <label for="taken">Taking the parts out</label>
-        <input id="taken" type="range" min={0} max={report.removal_order.length} step={1} value={taken}
-               aria-valuetext={stepInWords(report, taken)} onInput={(event) => setTaken(Number(event.currentTarget.value))} />
-        <output for="taken">{stepInWords(report, taken)}</output>
-      </div>
-      <Parts report={report} colours={colours} chosen={chosen} choose={setChosen} />
+      {alone ? <p class="quiet-text">It is printed in one piece: nothing has to be glued.</p> : (
+        <>
+          <div class="unpack">
+            <label for="taken">Taking the parts out</label>
+            <input id="taken" type="range" min={0} max={report.removal_order.length} step={1} value={taken}
+                   aria-valuetext={stepInWords(report, taken)} onInput={(event) => setTaken(Number(event.currentTarget.value))} />
+            <output for="taken">{stepInWords(report, taken)}</output>
+          </div>
+          <Parts report={report} colours={colours} chosen={chosen} choose={setChosen} />
+        </>
+      )}
     </section>
   );
 }

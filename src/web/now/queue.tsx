@@ -1,10 +1,10 @@
 // A job that has not ended, as a row of the queue.
-import type { Job } from '../daemon/types';
+import { ownEstimate, type Job } from '../daemon/types';
 import { JobButtons } from '../job/actions';
 import { Preview } from '../job/preview';
 import { jobHref } from '../route';
 import { Badge, Bar } from '../ui/bits';
-import { duration, jobBadge, money, nextStep, progressText } from '../words';
+import { duration, jobBadge, money, nextStep, progressText, sentence } from '../words';
 
 export function QueueRow({ job }: { job: Job }) {
   const next = nextStep(job);
@@ -20,18 +20,16 @@ export function QueueRow({ job }: { job: Job }) {
         {job.progress
           ? <><Bar fraction={job.progress.fraction} label={`Job ${job.id}: ${job.progress.stage}`} tone={jobBadge(job).tone} />
               <p class="quiet-text figure">{progressText(job)}</p></>
-          : <p>{job.reason ? `${job.reason}. ` : ''}{next || sentence(job.status)}</p>}
+          : <p>{[sentence(job.reason), next || sentence(job.status)].filter(Boolean).join(' ')}</p>}
         <JobButtons job={job} />
       </div>
     </li>
   );
 }
 
-const sentence = (text: string): string => (text === '' ? '' : `${text[0]?.toUpperCase()}${text.slice(1)}.`);
-
 // What printing it takes.
 function figures(job: Job): string {
-  const own = job.kind === 'program' ? job.estimates?.as_is : job.estimates?.packed;
+  const own = ownEstimate(job);
   const time_s = job.predicted_s ?? own?.time_s ?? null;
   if (!own?.fits || time_s === null) return '';
   return ` · ${duration(time_s)}${own.cost === null ? '' : ` · ${money(own.cost, own.currency)}`}`;
