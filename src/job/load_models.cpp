@@ -11,7 +11,7 @@
 namespace packmerger {
 namespace {
 
-constexpr double kSmallest = 1;    // mm
+constexpr double kSmallest = 5;    // mm; models drawn in units of one are often two of them long
 constexpr double kLargest = 2000;  // mm
 
 double factor(const ModelFile& file, const Sizing& sizing) {

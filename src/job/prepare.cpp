@@ -60,6 +60,18 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
   job.removal_paths = std::move(arrangement.removal_paths);
 }
 
+// Cavities trap nothing where the model is solid or open, and thin features are hard to assemble
+// only where there is something to assemble.
+void forget_what_does_not_apply(Job& job) {
+  const bool is_cut = std::any_of(job.parts.begin(), job.parts.end(),
+                                  [](const JobPart& part) { return !part.neighbours.empty(); });
+  const bool is_solid = job.variant == name_of(Variant::kSolid);
+  std::erase_if(job.warnings, [&](const Warning& warning) {
+    return (warning.code == "sealed_cavity" && (is_solid || is_cut)) ||
+           (warning.code == "thin_features" && !is_cut);
+  });
+}
+
 std::vector<TrayFiles> programs(Job& job, const std::vector<Tray>& trays,
                                 const Progress& progress) {
   std::vector<TrayFiles> files;
@@ -92,6 +104,7 @@ Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
   Job job = std::move(planned.job);
   job.variant = name_of(chosen);
   record(job, std::move(arrangement), trays);
+  forget_what_does_not_apply(job);
   const std::vector<TrayFiles> files =
       timed(job.timings_s, "program", [&] { return programs(job, trays, progress); });
   write_job_folder(job, files, out, progress);

@@ -238,18 +238,22 @@ int orient_outwards(TriangleSoup& soup, Counts& counts) {
 }
 
 std::string told(const Counts& counts, int number_of_parts) {
-  std::string text = "The model was repaired: number_of_parts = " + std::to_string(number_of_parts);
-  const auto add = [&](const char* name, int count) {
-    if (count > 0) text += std::string(", ") + name + " = " + std::to_string(count);
+  std::string text;
+  const auto add = [&](int count, const std::string& thing, const char* what) {
+    if (count == 0) return;
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + thing;
+    text += (count == 1 ? "" : "s") + std::string(what);
   };
-  add("open_edges", counts.open_edges);
-  add("degenerate_facets", counts.degenerate_facets);
-  add("edges_fixed", counts.edges_fixed);
-  add("facets_removed", counts.facets_removed);
-  add("facets_reversed", counts.facets_reversed);
-  add("holes_filled", counts.holes_filled);
-  add("facets_added", counts.facets_added);
-  return text;
+  add(counts.open_edges, "open edge", "");
+  add(counts.degenerate_facets, "facet", " without area");
+  add(counts.edges_fixed, "edge", " mended");
+  add(counts.facets_removed, "facet", " removed");
+  add(counts.facets_reversed, "facet", " turned round");
+  add(counts.holes_filled, "hole", " filled");
+  add(counts.facets_added, "facet", " added");
+  const std::string pieces = std::to_string(number_of_parts) + " separate pieces";
+  return "The model was repaired" + (text.empty() ? "" : ": " + text) +
+         (number_of_parts > 1 ? "; it consists of " + pieces : "");
 }
 
 }  // namespace

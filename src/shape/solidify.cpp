@@ -14,9 +14,10 @@
 namespace packmerger {
 namespace {
 
-std::string two_digits(double number) {
+std::string at_most(double mm) {
+  if (mm < 0.01) return "less than 0.01 mm";
   char text[32];
-  std::snprintf(text, sizeof text, "%.2f", number);
+  std::snprintf(text, sizeof text, "at most %.2f mm", mm);
   return text;
 }
 
@@ -60,8 +61,8 @@ Solidified solidify(const Mesh& model, const ShapeSettings& settings, bool hollo
     warnings.push_back(
         {"resampled", std::string(crosses ? "The surface intersects itself"
                                           : "No tetrahedra could be made inside the surface") +
-                          ", so it was re-sampled: it deviates from the model by at most " +
-                          two_digits(resampled.deviation_mm) + " mm"});
+                          ", so it was re-sampled: it deviates from the model by " +
+                          at_most(resampled.deviation_mm)});
     return with_warnings(std::move(*solid));
   }
   throw Error(Fault::kBadInput, "No tetrahedra can be made of the model, re-sampled or not",
