@@ -145,6 +145,7 @@ class Foreman {
   void notice_printers();
   void sent(JobRecord job, const SendEnded& event);
   void not_started(JobRecord job, const SendEnded& event);
+  void end_untouched(JobRecord job, const SendEnded& event);
 
   JobRecord print_again(JobRecord job, const JobRecord& old);
   JobRecord prepare_again(JobRecord job, const JobRecord& old);

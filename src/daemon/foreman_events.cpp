@@ -140,6 +140,7 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   const PrinterConfig* printer = config_.printer(job.printer);
   const bool handed_over = printer != nullptr && printer->hands_over();
   if (event.outcome == SendOutcome::kNotStarted) return not_started(job, event);
+  if (event.untouched) return end_untouched(job, event);
   note_told(job);
   if (event.outcome == SendOutcome::kFailed)
     return end(job, JobState::kFailed, with_told(job, sentence(event.failure)), event.failure.hint);
@@ -166,6 +167,20 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   store_.save(job, note);
   live_[job.id].failures = 0;
   say(job, note);
+}
+
+// Nothing of ours was printed: the bed is as clear as it was before.
+void Foreman::end_untouched(JobRecord job, const SendEnded& event) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  PrinterRecord record = store_.printer(job.printer);
+  record.bed_clear = record.bed_clear || (printer != nullptr && printer->has_bed());
+  store_.save(record);
+  if (event.outcome == SendOutcome::kFailed)
+    return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint);
+  if (stopping_)
+    return end(job, JobState::kFailed, "the daemon was stopped before the print began",
+               "Print it with packmerger jobs again " + std::to_string(job.id) + ".");
+  end(job, JobState::kCancelled, "cancelled before the print began", "");
 }
 
 // Nothing of ours was printed, and it is tried again. The bed is as clear as it was before, unless

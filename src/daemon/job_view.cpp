@@ -48,9 +48,9 @@ std::string sending_text(const JobRecord& job, const LiveJob* live) {
   if (live == nullptr) return "sending";
   const std::string tray =
       job.trays > 1 ? fmt::format("tray {} of {}, ", job.next_tray, job.trays) : "";
-  std::string text = fmt::format("{}{} {:.0f} %", tray, print_state_name(live->print.state),
-                                 100 * fraction_of(live->print));
-  if (!live->print.text.empty()) text += ", " + live->print.text;
+  const std::string_view state = print_state_name(live->print.state);
+  std::string text = fmt::format("{}{} {:.0f} %", tray, state, 100 * fraction_of(live->print));
+  if (!live->print.text.empty() && live->print.text != state) text += ", " + live->print.text;
   if (live->print.remaining_s && live->print.done > 0)
     text += ", " + duration_text(*live->print.remaining_s) + " left";
   return text;

@@ -136,6 +136,7 @@ struct SendEnded {
   std::string note;      // for the history: where it was handed over to
   double printed_s = 0;  // how long it took, pauses left out; 0: nobody can tell
   double paused_s = 0;
+  bool untouched = false;  // nothing of the tray had reached the printer, and it does nothing else
 };
 struct DevicesSeen {               // whenever something was connected or went
   std::optional<Devices> devices;  // nothing: the system does not tell, and why

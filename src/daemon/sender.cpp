@@ -10,13 +10,15 @@ namespace {
 // Told by every link before the first byte of the job is sent; a printer may be waited for before.
 bool has_begun(const PrintReport& report) {
   return report.done > 0 ||
-         (report.state != PrintState::kConnecting && report.state != PrintState::kWaiting);
+         (report.state != PrintState::kConnecting && report.state != PrintState::kWaiting &&
+          report.state != PrintState::kCancelling);
 }
 
 SendOutcome outcome_of(const Error& error, bool begun, const PrintControl& control) {
   if (error.fault() == Fault::kInterrupted || control.cancelled()) return SendOutcome::kCancelled;
   const bool later = error.fault() == Fault::kUnavailable || error.fault() == Fault::kBusy ||
-                     error.fault() == Fault::kCannotWrite;
+                     error.fault() == Fault::kCannotWrite ||
+                     (error.fault() == Fault::kIo && !control.stopped());
   return later && !begun ? SendOutcome::kNotStarted : SendOutcome::kFailed;
 }
 
@@ -47,7 +49,10 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
     return {order.job,
             outcome_of(error, begun, *order.control),
             {error.fault(), error.what(), error.hint()},
-            ""};
+            "",
+            0,
+            0,
+            !begun && error.fault() != Fault::kBusy};
   } catch (const std::exception& error) {
     return {order.job,
             SendOutcome::kFailed,

@@ -39,6 +39,21 @@ def processor_s(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+class Silent:
+    """A terminal behind which nobody answers."""
+
+    def __init__(self, test):
+        self.host, self.printer = os.openpty()
+        self.name = os.ttyname(self.printer)
+        test.addCleanup(self.go)
+
+    def go(self):
+        for descriptor in (self.host, self.printer):
+            if descriptor is not None:
+                os.close(descriptor)
+        self.host = self.printer = None
+
+
 class LostPrinter(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="packmerger-lost-")
@@ -131,7 +146,7 @@ class LostPrinter(unittest.TestCase):
         executed = [line for line in record.read_text().splitlines() if line not in own]
         self.assertEqual(executed, gcode().splitlines())
 
-    def daemon(self, name):
+    def daemon(self, name, simulated=True):
         folder = self.folder / name
         folder.mkdir()
         prepare = folder / "prepare.py"  # stands in for packmerger prepare: the job is there already
@@ -151,7 +166,7 @@ rescan_s = 1
 profile = "marlin"
 port = "{self.port}"
 approve = "auto"
-simulated = true
+simulated = {str(simulated).lower()}
 """)
         running = program.Background(self, "packmergerd", "--config", config, log=folder / "daemon.log")
         running.socket = ("--socket", folder / "state" / "packmergerd.sock")
@@ -189,6 +204,33 @@ simulated = true
         self.assertEqual(program.run("jobs", "again", "1", *daemon.socket).code, 0)
         self.wait_for(lambda: self.shown(daemon, 2)["state"] == "done", lambda: self.shown(daemon, 2))
         self.assertIn(gcode(), record.read_text())
+        self.assertEqual(daemon.end(), 0)
+
+    def bed(self, daemon):
+        told = json.loads(program.run("printers", "list", "--json", *daemon.socket).out)
+        return next(printer["bed"] for printer in told if printer["name"] == "m")
+
+    def connects(self, daemon):
+        return self.shown(daemon)["state"] == "sending" and self.shown(daemon)["progress"]["stage"] == "connecting"
+
+    def test_what_ends_before_it_began_leaves_the_bed_clear(self):
+        self.job("marlin")
+        silent = Silent(self)
+        self.port.symlink_to(silent.name)
+        daemon = self.daemon("daemon", simulated=False)
+        self.assertEqual(program.run("printers", "clear", "m", *daemon.socket).code, 0)
+        self.wait_for(lambda: self.connects(daemon), lambda: self.shown(daemon))
+        silent.go()
+        self.wait_for(lambda: "is gone" in self.shown(daemon)["reason"], lambda: self.shown(daemon))
+        self.assertEqual((self.shown(daemon)["state"], self.bed(daemon)), ("approved", "clear"))
+
+        self.port.unlink()
+        self.port.symlink_to(Silent(self).name)
+        self.wait_for(lambda: self.connects(daemon), lambda: self.shown(daemon))
+        self.assertEqual(program.run("jobs", "cancel", "1", *daemon.socket).code, 0)
+        self.wait_for(lambda: self.shown(daemon)["state"] == "cancelled", lambda: self.shown(daemon))
+        self.assertEqual(self.shown(daemon)["reason"], "cancelled before the print began")
+        self.assertEqual((self.shown(daemon)["told"], self.bed(daemon)), (None, "clear"))
         self.assertEqual(daemon.end(), 0)
 
 

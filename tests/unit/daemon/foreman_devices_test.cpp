@@ -133,5 +133,37 @@ TEST_F(DevicesOfThePrinters, WhatIsHandedOverIsNotConnected) {
   EXPECT_EQ(shop_.ask({{"verb", "printers.list"}}).at("result").at(0).at("connected"), nullptr);
 }
 
+TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
+  struct Ending {
+    SendOutcome outcome;
+    Failure failure;
+    bool untouched;
+    JobState state;
+    std::string reason;
+  };
+  const Failure cancelled{Fault::kInterrupted, "Cancelled before the print began", ""};
+  const Failure refused{Fault::kBadInput, "The program has no command", "Prepare it again."};
+  for (const Ending& ending : std::vector<Ending>{
+           {SendOutcome::kCancelled, cancelled, true, JobState::kCancelled,
+            "cancelled before the print began"},
+           {SendOutcome::kFailed, refused, true, JobState::kFailed, refused.what},
+           {SendOutcome::kCancelled, cancelled, false, JobState::kCancelled,
+            "cancelled while printing"},
+           {SendOutcome::kFailed, refused, false, JobState::kFailed, refused.what}}) {
+    Workshop shop;
+    shop.foreman_->clear("real");
+    shop.drop("real", "a.stl");
+    shop.prepare(*shop.prepare_order());
+    ASSERT_TRUE(shop.send_order("real"));
+    EXPECT_FALSE(shop.store_->printer("real").bed_clear);
+    SendEnded end{1, ending.outcome, ending.failure, ""};
+    end.untouched = ending.untouched;
+    shop.tell(end);
+    EXPECT_EQ(shop.job(1).state, ending.state);
+    EXPECT_EQ(shop.job(1).reason, ending.reason);
+    EXPECT_EQ(shop.store_->printer("real").bed_clear, ending.untouched);
+  }
+}
+
 }  // namespace
 }  // namespace packmerger
