@@ -1,5 +1,5 @@
 // Figures and states as people read them.
-import type { Job, Printer } from './daemon/types';
+import { hasEnded, type Job, type Printer } from './daemon/types';
 
 const rounded = (value: number, digits: number): string =>
   value.toLocaleString('en', { maximumFractionDigits: digits, minimumFractionDigits: digits });
@@ -56,9 +56,11 @@ export function when(unix_s: number): string {
   return `${date.toLocaleDateString(undefined, { day: 'numeric', month: 'short', year: 'numeric' })}, ${time}`;
 }
 
-// The daemon's phrases as sentences.
-export const sentence = (text: string): string =>
-  (text === '' ? '' : `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!?…]$/.test(text) ? '' : '.'}`);
+// The daemon's phrases as sentences; what begins with the name of a file keeps it.
+export function sentence(text: string): string {
+  const begun = text.replace(/^[a-z]+(?=[ ,:]|$)/, (word) => word.charAt(0).toUpperCase() + word.slice(1));
+  return text === '' || /[.!?…]$/.test(text) ? begun : `${begun}.`;
+}
 
 export const count = (number: number, one: string): string => `${number} ${one}${number === 1 ? '' : 's'}`;
 
@@ -93,7 +95,7 @@ const STAGE_BADGES: Record<string, Badge> = {
 };
 
 export function jobBadge(job: Job): Badge {
-  if (job.held && job.state !== 'sending') return { tone: 'attention', text: 'Held' };
+  if (job.held && job.state !== 'sending' && !hasEnded(job)) return { tone: 'attention', text: 'Held' };
   if (job.state === 'sending') return STAGE_BADGES[job.progress?.stage ?? ''] ?? JOB_BADGES.sending;
   if (job.state === 'approved' && job.waits_for === 'clear_bed') return { tone: 'attention', text: 'Clear the bed' };
   return JOB_BADGES[job.state];

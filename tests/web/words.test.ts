@@ -29,8 +29,8 @@ test('figures', () => {
 });
 
 test('phrases of the daemon become sentences', () => {
-  expect(['', 'packing does not pay', 'It did not answer.', 'why?'].map(sentence)).toEqual(
-    ['', 'Packing does not pay.', 'It did not answer.', 'Why?']);
+  expect(['', 'packing does not pay', 'It did not answer.', 'why?', 'bad.obj.toml:2: no', 'cancelled'].map(sentence)).toEqual(
+    ['', 'Packing does not pay.', 'It did not answer.', 'why?', 'bad.obj.toml:2: no.', 'Cancelled.']);
 });
 
 test('what a job takes is what was prepared of it', () => {
@@ -44,6 +44,7 @@ test('a held job says so before anything else, and a printing one how it prints'
   const job = { state: 'ready', held: false, waits_for: null, progress: null } as unknown as Job;
   expect(jobBadge(job).text).toBe('Ready to approve');
   expect(jobBadge({ ...job, held: true }).text).toBe('Held');
+  expect(jobBadge({ ...job, held: true, state: 'failed' }).text, 'a hold ends with its job').toBe('Failed');
   expect(jobBadge({ ...job, state: 'sending', progress: { stage: 'waiting', fraction: 0 } }).text).toBe('Asks you');
   expect(jobBadge({ ...job, state: 'approved', waits_for: 'clear_bed' }).tone).toBe('attention');
 });

@@ -59,7 +59,7 @@ function Row({ job }: { job: Job }) {
   const cost = own?.fits && own.cost !== null ? money(own.cost, own.currency) : '';
   const ended = job.ended_s ? when(job.ended_s) : '';
   return (
-    <li class="card row ended" data-job={job.id}>
+    <li class={`card row ended ${jobBadge(job).tone}`} data-job={job.id}>
       <div class="row-words">
         <div class="card-head">
           <h2><a href={jobHref(job.id)}>{job.name}</a></h2>

@@ -87,7 +87,7 @@ export function Views({ job, report }: { job: Job; report: PackedReport }) {
           </figure>
         </div>
       )}
-      {alone ? <p class="quiet-text">It is printed in one piece: nothing has to be glued.</p> : (
+      {alone ? <p class="quiet-text in-one-piece">It is printed in one piece: nothing has to be glued.</p> : (
         <>
           <div class="unpack">
             <label for="taken">Taking the parts out</label>

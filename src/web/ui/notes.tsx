@@ -48,7 +48,7 @@ export function Notes() {
           <div>
             <strong>{note.text}</strong>
             {note.hint ? <div>{note.hint}</div> : null}
-            {note.href ? <a href={note.href}>Open it</a> : null}
+            {note.href ? <>{' '}<a href={note.href}>Open it</a></> : null}
           </div>
           <button type="button" class="icon-button" aria-label="Close this message" onClick={() => close(note.id)}>
             <Icon name="close" />

@@ -47,6 +47,13 @@ describe('a proposal', { skip: missing }, () => {
     }, 400);
     assert.equal(job.printer, 'fair');
     assert.equal(job.waits_for, 'approval', 'nobody named that printer');
+    const { solid, packed } = job.estimates;
+    assert.equal(job.reason, packed.fits && solid.cost <= packed.cost ? 'prepared solid: packing does not pay' : 'prepared solid, not packed');
+    const queue = page.locator('[data-job="1"]');
+    await queue.getByText('Ready to approve').waitFor();
+    const queued = await queue.innerText();
+    assert.ok(queued.includes(solid.cost.toFixed(2)), `${queued} tells what was prepared, which costs ${solid.cost}`);
+    assert.ok(queued.includes(job.reason.replace('prepared', 'Prepared')), queued);
 
     await page.goto(`${shop.base}/#/jobs/1`);
     const table = page.getByRole('region', { name: 'Why this printer' });
@@ -64,6 +71,9 @@ describe('a proposal', { skip: missing }, () => {
     assert.doesNotMatch(await row('dear').innerText(), /proposed/);
     assert.match(await row('tiny').innerText(), /does not fit/);
     await page.getByText('proposed by any').waitFor();
+    await page.getByText('It is printed in one piece').waitFor();
+    assert.equal(await page.getByLabel('Taking the parts out').count(), 0, 'there is nothing to take apart');
+    assert.equal(await page.locator('.part').count(), 0);
 
     for (const width of ['wide', 'narrow']) {
       const look = await browser.visit(shop.base, { key: shop.key, view: '#/jobs/1', width });
