@@ -11,8 +11,8 @@ namespace packmerger {
 // alike, separates sheets that touch in an edge or at a vertex, stitches borders, drops loose
 // shards, fills holes, and orients components outwards; components inside another one are cavities
 // when their file orientation or nesting says so. What was changed is told in one warning with code
-// "repaired" whose text carries counts under PrusaSlicer's names (open_edges, degenerate_facets,
-// edges_fixed, facets_removed, facets_reversed, number_of_parts).
+// "repaired" whose text counts it: open edges, facets without area, edges mended, facets removed,
+// turned round and added, holes filled, and the pieces where there are several.
 //
 // A closed 2-manifold that is oriented outwards passes unchanged: the same points and triangles in
 // the same order, no warning.
