@@ -92,6 +92,15 @@ void print_times(const json& job) {
                                         duration_text(seconds)));
 }
 
+// What the printer is given of each tray. Jobs of earlier versions do not tell.
+void print_tray_files(const json& job) {
+  if (job.value("trays", 0) == 0) return;
+  const json files = job.value("tray_files", json());
+  if (!files.is_array()) return print_line("sha256", "of what is sent: not known");
+  for (const json& file : files)
+    print_line("sha256", text_of(file, "sha256") + " " + text_of(file, "file"));
+}
+
 // How the printers were compared, where one of them was proposed.
 void print_choice(const json& job) {
   const json choice = job.value("choice", json());
@@ -145,6 +154,7 @@ void show(const Arguments& arguments) {
   print_line("received", time_text(job.value("received_s", json())));
   print_line("ended", time_text(job.value("ended_s", json())));
   print_line("folder", text_of(job, "folder"));
+  print_tray_files(job);
   print_line("profile", text_of(job, "profile"));
   if (const json seed = job.value("seed", json()); seed.is_number())
     print_line("seed", std::to_string(seed.get<std::int64_t>()));

@@ -262,7 +262,8 @@ void Foreman::start_sending(const JobRecord& approved) {
   live.control = std::make_shared<PrintControl>();
   live.print = {};
   crew_.senders.at(job.printer)
-      .push({job.id, job.folder, job.next_tray, handoff_name(job), told_file(job), live.control});
+      .push({job.id, job.folder, job.next_tray, handoff_name(job), told_file(job), live.control,
+             job.tray_files});
   say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
 }
 

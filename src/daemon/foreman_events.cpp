@@ -44,6 +44,7 @@ void Foreman::on(const Prepared& event) {
     job->profile = event.profile;
     job->seed = event.seed;
     job->variant = event.variant;
+    job->tray_files = event.tray_files;
     job->predicted_s = event.predicted_s;
     job->predicted_by = event.predicted_by;
     job->pays = event.doubt.empty();

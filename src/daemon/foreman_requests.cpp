@@ -121,6 +121,7 @@ JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
   job.profile = old.profile;
   job.seed = old.seed;
   job.variant = old.variant;
+  job.tray_files = old.tray_files;
   job.predicted_s = old.predicted_s;
   job.predicted_by = old.predicted_by;
   job.pays = old.pays;

@@ -125,9 +125,31 @@ std::string doubt_about(const PreparedJob& job) {
   return in_one_piece ? doubt : doubt + ": " + way + " it costs as little";
 }
 
-fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,
-                   const std::string& extension) {
-  return folder / (stem + (tray > 1 ? "-" + std::to_string(tray) : "") + extension);
+std::string tray_file(const Profile& profile, int tray) {
+  const std::string number = tray > 1 ? "-" + std::to_string(tray) : "";
+  if (profile.dialect == Dialect::kGcode) return "program" + number + ".gcode";
+  if (profile.dialect == Dialect::kS3g) return "program" + number + ".x3g";
+  return "tray" + number + (profile.document == HandoffDocument::kTrayStl ? ".stl" : ".3mf");
+}
+
+std::string hash_trays(const fs::path& folder, int trays) {
+  const Profile profile = read_prepared_profile(folder);
+  json files = json::array();
+  for (int tray = 1; tray <= trays; ++tray) {
+    const std::string file = tray_file(profile, tray);
+    files.push_back({{"file", file}, {"sha256", sha256_hex_of_file(folder / file)}});
+  }
+  return files.dump();
+}
+
+std::string hash_of_tray(const std::string& tray_files, int tray) {
+  if (tray_files.empty()) return {};
+  try {
+    return json::parse(tray_files).at(static_cast<std::size_t>(tray) - 1).at("sha256");
+  } catch (const json::exception&) {
+    throw Error(Fault::kBadInput, "Nothing tells what was prepared of tray " + std::to_string(tray),
+                kPrepareAnew);
+  }
 }
 
 }  // namespace packmerger

@@ -12,6 +12,10 @@ namespace packmerger {
 // The variant of a job that is somebody else's program, printed as it is.
 inline constexpr std::string_view kProgramVariant = "program";
 
+// What to do where the files of a job folder are not what they were.
+inline constexpr const char* kPrepareAnew =
+    "Have it prepared anew: drop its file again, or run packmerger prepare.";
+
 struct PreparedJob {
   int trays = 1;
   std::string title;         // the first input's name without its ending
@@ -41,8 +45,16 @@ bool packing_pays(const PreparedJob& job);
 // against printing it.
 std::string doubt_about(const PreparedJob& job);
 
-// "program.gcode", "program-2.x3g", "tray-2.stl": a tray's file in the job folder.
-fs::path tray_path(const fs::path& folder, const std::string& stem, int tray,
-                   const std::string& extension);
+// What the printer is given of a tray: "program.gcode", "program-2.x3g", or the profile's document,
+// "tray-2.stl".
+std::string tray_file(const Profile& profile, int tray);
+
+// For each tray in turn what its printer is given and the SHA-256 of its bytes, JSON text:
+// [{"file": "program.gcode", "sha256": "…"}]. Throws Error{kNoInput} where one is not there.
+std::string hash_trays(const fs::path& folder, int trays);
+
+// The SHA-256 of a tray's bytes in what hash_trays() gave; empty where that is empty. Throws
+// Error{kBadInput} where it does not tell of this tray.
+std::string hash_of_tray(const std::string& tray_files, int tray);
 
 }  // namespace packmerger

@@ -20,6 +20,7 @@ std::string result_note(const JobRecord& job) {
                      {"profile", job.profile},
                      {"seed", job.seed},
                      {"variant", job.variant},
+                     {"tray_files", list_or_null(job.tray_files)},
                      {"estimates", object_or_null(job.estimates)},
                      {"choice", object_or_null(job.choice)},
                      {"predicted_s", or_null(job.predicted_s)},

@@ -207,6 +207,7 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"profile", or_null(job.profile)},
       {"seed", job.profile.empty() || is_program(job.name) ? json() : json(job.seed)},
       {"variant", job.variant},
+      {"tray_files", list_or_null(job.tray_files)},
       {"pays", job.pays},
       {"estimates", object_or_null(job.estimates)},
       {"predicted_s", or_null(job.predicted_s)},

@@ -13,6 +13,12 @@ inline nlohmann::json object_or_null(const std::string& text) {
   return object.is_object() ? object : nlohmann::json();
 }
 
+// JSON text; null where it holds no list.
+inline nlohmann::json list_or_null(const std::string& text) {
+  nlohmann::json list = nlohmann::json::parse(text, nullptr, false);
+  return list.is_array() ? list : nlohmann::json();
+}
+
 inline nlohmann::json or_null(double value) {
   return value == 0 ? nlohmann::json() : nlohmann::json(value);
 }

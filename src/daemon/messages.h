@@ -69,6 +69,7 @@ struct SendOrder {
   std::string handoff_name;         // of the folder that is handed over
   std::filesystem::path told_file;  // where it is kept how far the printer was told to go
   std::shared_ptr<PrintControl> control;
+  std::string tray_files;  // of the job when it was prepared; empty: not known
 };
 
 // A file that came through a door (the page, a program, a slicer) and lies in the state folder;
@@ -101,6 +102,7 @@ struct Prepared {
   double predicted_s = 0;    // by the estimate of that variant; 0: none
   std::string predicted_by;  // its source
   std::string doubt;         // why somebody should look at it before it is printed; empty: nothing
+  std::string tray_files;    // job_folder.h's hash_trays()
 };
 struct ComparedPrinter {
   std::string printer;

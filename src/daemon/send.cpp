@@ -31,8 +31,35 @@ StreamOptions stream_options(const Profile& profile, const PreparedJob& job, int
   return options;
 }
 
-std::string document_extension(HandoffDocument document) {
-  return document == HandoffDocument::kTrayStl ? ".stl" : ".3mf";
+// A tray's file, which must be there.
+fs::path tray_to_send(const fs::path& folder, const Profile& profile, int tray) {
+  const fs::path file = folder / tray_file(profile, tray);
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored))
+    throw Error(Fault::kNoInput,
+                fmt::format("The file of tray {}, {}, is not there any more", tray,
+                            file.filename().string()),
+                kPrepareAnew);
+  return file;
+}
+
+void check_hash(const std::string& sha256, const std::string& tray_files, int tray,
+                const fs::path& file) {
+  const std::string recorded = hash_of_tray(tray_files, tray);
+  if (!recorded.empty() && sha256 != recorded)
+    throw Error(Fault::kBadInput,
+                fmt::format("The file of tray {}, {}, is not what was prepared (its bytes were "
+                            "changed)",
+                            tray, file.filename().string()),
+                kPrepareAnew);
+}
+
+void check_documents(const fs::path& folder, const Profile& profile, int trays,
+                     const std::string& tray_files) {
+  for (int tray = 1; tray <= trays && !tray_files.empty(); ++tray) {
+    const fs::path file = tray_to_send(folder, profile, tray);
+    check_hash(sha256_hex_of_file(file), tray_files, tray, file);
+  }
 }
 
 bool holds_same_report(const fs::path& folder, const fs::path& job_folder) {
@@ -44,7 +71,8 @@ bool holds_same_report(const fs::path& folder, const fs::path& job_folder) {
 }  // namespace
 
 void send_tray(const fs::path& job_folder, int tray, const std::string& port,
-               const fs::path& told_file, const PrintListener& listener, PrintControl& control) {
+               const fs::path& told_file, const PrintListener& listener, PrintControl& control,
+               const std::string& tray_files) {
   const PreparedJob job = read_prepared(job_folder);
   const Profile profile = read_prepared_profile(job_folder);
   if (profile.dialect == Dialect::kHandoff)
@@ -53,6 +81,11 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
   if (tray < 1 || tray > job.trays)
     throw Error(Fault::kNoInput, fmt::format("The job has no tray {}", tray),
                 fmt::format("It has {}; name one of them with --tray.", job.trays));
+  const fs::path file = tray_to_send(job_folder, profile, tray);
+  const bool is_document = profile.dialect == Dialect::kUsb;
+  // a program is hashed as it is sent, a document just before: that is read piece by piece
+  const std::string program = is_document ? "" : read_file(file, kMaxProgramBytes);
+  check_hash(is_document ? sha256_hex_of_file(file) : sha256_hex(program), tray_files, tray, file);
   StreamOptions options = stream_options(profile, job, tray);
   ProgressFile told(told_file);
   options.on_acknowledged = [&](std::size_t done, std::size_t total) {
@@ -63,15 +96,11 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
       if (done == 0) throw;
     }
   };
-  if (profile.dialect == Dialect::kUsb) {
+  if (is_document) {
     const UsbDevice device = find_usb_printer(connected_devices().usb, port, profile.link.usb_ids);
-    const fs::path document =
-        tray_path(job_folder, "tray", tray, document_extension(profile.document));
-    return print_usb(*open_usb_port(device, port), document, options, listener, control);
+    return print_usb(*open_usb_port(device, port), file, options, listener, control);
   }
   const bool is_gcode = profile.dialect == Dialect::kGcode;
-  const std::string program = read_file(
-      tray_path(job_folder, "program", tray, is_gcode ? ".gcode" : ".x3g"), kMaxProgramBytes);
   is_gcode ? check_gcode(program) : check_x3g(program);
   const std::string at =
       is_tcp(port) ? port : find_port(connected_serial_ports(), port, profile.link.usb_ids);
@@ -80,23 +109,27 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
   print(*channel, program, options, listener, control);
 }
 
-fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name) {
+fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name,
+                   const std::string& tray_files) {
   const PreparedJob job = read_prepared(job_folder);
   const Profile profile = read_prepared_profile(job_folder);
   if (profile.dialect != Dialect::kHandoff)
     throw Error(Fault::kUsage, "The " + profile.name + " is sent its jobs over a cable",
                 "Leave --to away, and name its port with --port.");
   const fs::path target = to / name;
-  if (holds_same_report(target, job_folder)) return target;
+  if (holds_same_report(target, job_folder)) {
+    check_documents(target, profile, job.trays, tray_files);
+    return target;
+  }
   std::error_code ignored;
   if (!fs::is_directory(to, ignored))
     throw Error(Fault::kCannotWrite, to.string() + " is no folder that can be written to",
                 "Make the folder, or connect the share it lies on.");
   TemporaryFolder folder = TemporaryFolder::beside(target);
-  const std::string extension = document_extension(profile.document);
   for (int tray = 1; tray <= job.trays; ++tray)
-    copy_file_whole(tray_path(job_folder, "tray", tray, extension),
-                    tray_path(folder.path(), "tray", tray, extension));
+    copy_file_whole(tray_to_send(job_folder, profile, tray),
+                    folder.path() / tray_file(profile, tray));
+  check_documents(folder.path(), profile, job.trays, tray_files);  // the very copies
   for (const char* file : {"job.json", "preview.png"})
     copy_file_whole(job_folder / file, folder.path() / file);
   folder.publish(target);

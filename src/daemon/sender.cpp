@@ -37,10 +37,12 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
   try {
     if (order.control->cancelled()) throw Error(Fault::kInterrupted, "Cancelled", "");
     if (printer.hands_over()) {
-      const fs::path target = hand_over(order.folder, printer.handoff_folder, order.handoff_name);
+      const fs::path target =
+          hand_over(order.folder, printer.handoff_folder, order.handoff_name, order.tray_files);
       return {order.job, SendOutcome::kDone, {}, "handed over in " + target.string()};
     }
-    send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control);
+    send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control,
+              order.tray_files);
     clock.end(now_s());
     // a document was only taken: how long it is printed, the printer does not tell
     if (!printer.abilities.is_sliced()) return {order.job, SendOutcome::kDone, {}, ""};

@@ -111,8 +111,11 @@ Prepared prepare(const PrepareOrder& order, Queue<Event>& events) {
   if (job.input_sha256 != sha256)
     throw Error(Fault::kBusy, "The model was changed while it was being read",
                 "Drop it again once the program that writes it has finished.");
-  return {order.job,   job.trays,       job.estimates,    job.profile,     job.seed,
-          job.variant, job.predicted_s, job.predicted_by, doubt_about(job)};
+  return {order.job,        job.trays,
+          job.estimates,    job.profile,
+          job.seed,         job.variant,
+          job.predicted_s,  job.predicted_by,
+          doubt_about(job), hash_trays(order.out, job.trays)};
 }
 
 Event prepare_or_fail(const PrepareOrder& order, Queue<Event>& events) {

@@ -62,9 +62,14 @@ ALTER TABLE job ADD COLUMN seed INTEGER NOT NULL DEFAULT 0;
 PRAGMA user_version = 6;
 )";
 
+constexpr const char* kAddTrayFiles = R"(
+ALTER TABLE job ADD COLUMN tray_files TEXT NOT NULL DEFAULT '';
+PRAGMA user_version = 7;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 6> kSteps = {kMakeTables,  kAddTold,  kAddPrograms,
-                                               kAddSettings, kAddTimes, kAddChoice};
+constexpr std::array<const char*, 7> kSteps = {kMakeTables, kAddTold,   kAddPrograms, kAddSettings,
+                                               kAddTimes,   kAddChoice, kAddTrayFiles};
 
 }  // namespace
 

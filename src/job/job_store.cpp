@@ -42,7 +42,7 @@ constexpr std::string_view kColumns =
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
     "told, told_total, variant, at_once, with_settings, predicted_s, "
     "predicted_by, printed_s, paused_s, chosen_by, choice, "
-    "profile, seed";
+    "profile, seed, tray_files";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -72,7 +72,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
   statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
   statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
-  statement.bind(job.profile).bind(job.seed);
+  statement.bind(job.profile).bind(job.seed).bind(job.tray_files);
 }
 
 JobState read_state(Statement& row) {
@@ -120,6 +120,7 @@ JobRecord read_job(Statement& row) {
   job.choice = row.text();
   job.profile = row.text();
   job.seed = row.integer();
+  job.tray_files = row.text();
   return job;
 }
 

@@ -123,6 +123,10 @@ class RandomLife {
       const Fault fault = untouched ? Fault::kUnavailable : Fault::kBusy;
       shop_.tell(SendEnded{order.job, SendOutcome::kNotStarted, {fault, "x", "y"}, ""});
     } else if (random_.below(4) == 0) {
+      clear_.insert(name);
+      shop_.tell(
+          SendEnded{order.job, SendOutcome::kFailed, {Fault::kBadInput, "x", "y"}, "", 0, 0, true});
+    } else if (random_.below(4) == 0) {
       printed_.insert({order.job, order.tray});
       shop_.tell(SendEnded{order.job, SendOutcome::kFailed, {Fault::kIo, "x", "y"}, ""});
     } else {

@@ -12,8 +12,8 @@ using fixtures::fault_of;
 
 // What the worker tells of a program.
 Prepared checked(std::int64_t job, const std::string& doubt = {}) {
-  return {job,       1,    R"({"as_is":{"fits":true,"time_s":60}})", "marlin", 0, "program", 60,
-          "program", doubt};
+  return {job,   1, R"({"as_is":{"fits":true,"time_s":60}})", "marlin", 0, "program", 60, "program",
+          doubt, ""};
 }
 
 fs::path upload_of(const Workshop& shop, const std::string& bytes) {

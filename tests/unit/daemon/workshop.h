@@ -92,7 +92,7 @@ class Workshop {
     fs::create_directories(order.out);
     std::ofstream(order.out / "job.json") << "{}";
     tell(Prepared{order.job, trays, R"({"packed":{"fits":true,"cost":1}})", "marlin", 1, "packed",
-                  60, "slicer", pays ? "" : "packing does not pay"});
+                  60, "slicer", pays ? "" : "packing does not pay", ""});
   }
 
   // The clerk's work, really done.

