@@ -80,6 +80,7 @@ export interface Job {
   hint: string;
   told: { done: number; total: number } | null;
   folder: string;
+  tray_files: { file: string; sha256: string }[] | null;  // null: not prepared yet, or by an earlier version
   kind: 'model' | 'program';
   chosen_by: string | null;
   choice: Choice | null;

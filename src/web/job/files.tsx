@@ -33,6 +33,12 @@ export function filesOf(job: Job, dialect: string): { file: string; title: strin
   return [...files, { file: 'job.json', title: 'Report, JSON' }];
 }
 
+// The bytes that the printer is given, or was.
+function Hashes({ job }: { job: Job }) {
+  if (job.tray_files === null) return <p class="hashes">SHA-256 of what is sent: not known</p>;
+  return <>{job.tray_files.map(({ file, sha256 }) => <p key={file} class="hashes">{file}: SHA-256 {sha256}</p>)}</>;
+}
+
 export function Files({ job, dialect }: { job: Job; dialect: string }) {
   return (
     <section class="card" aria-labelledby="files-title">
@@ -42,6 +48,7 @@ export function Files({ job, dialect }: { job: Job; dialect: string }) {
           <Button key={file} icon="download" onClick={() => void save(job, file)}>{title}</Button>
         ))}
       </div>
+      <Hashes job={job} />
     </section>
   );
 }
