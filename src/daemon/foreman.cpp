@@ -289,7 +289,9 @@ void Foreman::stop() {
   stopping_ = true;
   for (auto& [id, live] : live_) {
     if (live.cancel_prepare) *live.cancel_prepare = true;
-    if (live.control) live.control->cancel();
+    if (!live.control) continue;
+    live.ended_by_stop = !live.control->cancelled();
+    live.control->cancel();
   }
 }
 

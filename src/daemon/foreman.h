@@ -42,8 +42,9 @@ struct LiveJob {
   std::string stage;                                  // of preparing
   double fraction = 0;  // of that stage, or of the tray that is printed
   PrintReport print;
-  int failures = 0;    // to start this tray, or to file the model
-  double retry_s = 0;  // not before, on the clock of advance()
+  bool ended_by_stop = false;  // its print was cancelled by the daemon's end, and by nobody before
+  int failures = 0;            // to start this tray, or to file the model
+  double retry_s = 0;          // not before, on the clock of advance()
 };
 
 // Which of the two threads has a job.
@@ -144,6 +145,7 @@ class Foreman {
   void advise(const PrinterConfig& printer);
   void notice_printers();
   void sent(JobRecord job, const SendEnded& event);
+  PrinterRecord with_bed_as_before(const JobRecord& job, const SendEnded& event) const;
   void not_started(JobRecord job, const SendEnded& event);
   void end_untouched(JobRecord job, const SendEnded& event);
 

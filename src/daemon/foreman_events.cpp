@@ -140,8 +140,13 @@ std::string Foreman::with_told(const JobRecord& job, const std::string& reason) 
 void Foreman::sent(JobRecord job, const SendEnded& event) {
   const PrinterConfig* printer = config_.printer(job.printer);
   const bool handed_over = printer != nullptr && printer->hands_over();
-  if (event.outcome == SendOutcome::kNotStarted) return not_started(job, event);
-  if (event.untouched) return end_untouched(job, event);
+  const LiveJob& live = live_[job.id];
+  const bool waits = event.outcome == SendOutcome::kNotStarted ||
+                     (event.outcome == SendOutcome::kCancelled && live.ended_by_stop);
+  // somebody may have cancelled it while its sender told that it is to be tried again
+  const bool is_wanted = !live.control || !live.control->cancelled() || live.ended_by_stop;
+  const bool untouched = event.untouched || event.outcome == SendOutcome::kNotStarted;
+  if (untouched) return waits && is_wanted ? not_started(job, event) : end_untouched(job, event);
   note_told(job);
   if (event.outcome == SendOutcome::kFailed)
     return end(job, JobState::kFailed, with_told(job, sentence(event.failure)), event.failure.hint);
@@ -170,32 +175,33 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   say(job, note);
 }
 
-// Nothing of ours was printed: the bed is as clear as it was before.
-void Foreman::end_untouched(JobRecord job, const SendEnded& event) {
+// Nothing of ours was printed: the bed is as clear as it was before, unless somebody else is
+// printing: then there will be something on it.
+PrinterRecord Foreman::with_bed_as_before(const JobRecord& job, const SendEnded& event) const {
   const PrinterConfig* printer = config_.printer(job.printer);
+  const bool was_clear =
+      printer != nullptr && printer->has_bed() && event.failure.fault != Fault::kBusy;
   PrinterRecord record = store_.printer(job.printer);
-  record.bed_clear = record.bed_clear || (printer != nullptr && printer->has_bed());
-  store_.save(record);
+  record.bed_clear = record.bed_clear || was_clear;
+  return record;
+}
+
+void Foreman::end_untouched(JobRecord job, const SendEnded& event) {
+  store_.save(with_bed_as_before(job, event));
   if (event.outcome == SendOutcome::kFailed)
     return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint);
-  if (stopping_)
-    return end(job, JobState::kFailed, "the daemon was stopped before the print began",
-               "Print it with packmerger jobs again " + std::to_string(job.id) + ".");
   end(job, JobState::kCancelled, "cancelled before the print began", "");
 }
 
-// Nothing of ours was printed, and it is tried again. The bed is as clear as it was before, unless
-// somebody else is printing: then there will be something on it.
+// It is tried again, by the next daemon where this one ends.
 void Foreman::not_started(JobRecord job, const SendEnded& event) {
-  const PrinterConfig* printer = config_.printer(job.printer);
-  PrinterRecord record = store_.printer(job.printer);
-  const bool untouched = event.failure.fault != Fault::kBusy;
-  record.bed_clear = record.bed_clear || (untouched && printer != nullptr && printer->has_bed());
+  LiveJob& live = live_[job.id];
+  const PrinterRecord record = with_bed_as_before(job, event);
   job.state = JobState::kApproved;
-  job.reason = sentence(event.failure);
+  job.reason = live.ended_by_stop ? "the daemon was stopped before the print began"
+                                  : sentence(event.failure);
   job.hint = event.failure.hint;
   store_.save(job, job.reason, &record);
-  LiveJob& live = live_[job.id];
   live.retry_s = retry_at(live.failures++);
   say(job, "not started: " + job.reason + ". It is tried again.");
 }

@@ -165,5 +165,39 @@ TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
   }
 }
 
+TEST(Foreman, AStopBeforeThePrintBeganLosesNothing) {
+  Workshop shop;
+  shop.foreman_->clear("real");
+  shop.drop("real", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  ASSERT_TRUE(shop.send_order("real"));
+  shop.foreman_->stop();
+  SendEnded end{1, SendOutcome::kCancelled, {Fault::kInterrupted, "Cancelled", ""}, ""};
+  end.untouched = true;
+  shop.tell(end);
+  EXPECT_EQ(shop.job(1).state, JobState::kApproved);
+  EXPECT_EQ(shop.job(1).reason, "the daemon was stopped before the print began");
+  EXPECT_TRUE(shop.store_->printer("real").bed_clear);
+}
+
+// The sender tells that it is tried again, and somebody cancels it before that is heard.
+TEST(Foreman, WhatWasCancelledIsNotTriedAgain) {
+  for (const Fault fault : {Fault::kUnavailable, Fault::kBusy})
+    for (const bool is_stopping : {false, true}) {
+      Workshop shop;
+      shop.foreman_->clear("real");
+      shop.drop("real", "a.stl");
+      shop.prepare(*shop.prepare_order());
+      ASSERT_TRUE(shop.send_order("real"));
+      shop.foreman_->cancel(1);
+      if (is_stopping) shop.foreman_->stop();
+      SendEnded end{1, SendOutcome::kNotStarted, {fault, "Nobody answers", ""}, ""};
+      end.untouched = fault != Fault::kBusy;
+      shop.tell(end);
+      EXPECT_EQ(shop.job(1).state, JobState::kCancelled);
+      EXPECT_EQ(shop.store_->printer("real").bed_clear, fault != Fault::kBusy);
+    }
+}
+
 }  // namespace
 }  // namespace packmerger
