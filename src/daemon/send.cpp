@@ -54,11 +54,13 @@ void check_hash(const std::string& sha256, const std::string& tray_files, int tr
                 kPrepareAnew);
 }
 
+// Of those that lie in the folder: somebody may have taken others out of it already.
 void check_documents(const fs::path& folder, const Profile& profile, int trays,
                      const std::string& tray_files) {
+  std::error_code ignored;
   for (int tray = 1; tray <= trays && !tray_files.empty(); ++tray) {
-    const fs::path file = tray_to_send(folder, profile, tray);
-    check_hash(sha256_hex_of_file(file), tray_files, tray, file);
+    const fs::path file = folder / tray_file(profile, tray);
+    if (fs::exists(file, ignored)) check_hash(sha256_hex_of_file(file), tray_files, tray, file);
   }
 }
 

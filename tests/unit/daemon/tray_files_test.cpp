@@ -110,6 +110,8 @@ TEST(HandOver, HandsOverWhatWasPreparedOrNothing) {
   write(job / "tray-2.stl", "G28 ; tray-2.stl\n");
   const fs::path target = hand_over(job, share, "bunny", files);
   EXPECT_EQ(hand_over(job, share, "bunny", files), target) << "again, after a kill";
+  fs::remove(target / "tray-2.stl");
+  EXPECT_EQ(hand_over(job, share, "bunny", files), target) << "taken out meanwhile";
   write(target / "tray.stl", "changed");
   EXPECT_EQ(fault_of([&] { hand_over(job, share, "bunny", files); }), Fault::kBadInput)
       << "not said to be handed over";
