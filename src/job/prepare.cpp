@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -61,14 +62,18 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
 }
 
 // Cavities trap nothing where the model is solid or open, and thin features are hard to assemble
-// only where there is something to assemble.
+// only where there is something to assemble. A warning does not tell its model.
 void forget_what_does_not_apply(Job& job) {
-  const bool is_cut = std::any_of(job.parts.begin(), job.parts.end(),
-                                  [](const JobPart& part) { return !part.neighbours.empty(); });
+  std::set<int> whole;
+  for (const JobPart& part : job.parts)
+    if (part.neighbours.empty()) whole.insert(part.model);
+  const bool is_any_cut = std::any_of(job.parts.begin(), job.parts.end(), [&](const JobPart& part) {
+    return !whole.contains(part.model);
+  });
   const bool is_solid = job.variant == name_of(Variant::kSolid);
   std::erase_if(job.warnings, [&](const Warning& warning) {
-    return (warning.code == "sealed_cavity" && (is_solid || is_cut)) ||
-           (warning.code == "thin_features" && !is_cut);
+    return (warning.code == "sealed_cavity" && (is_solid || whole.empty())) ||
+           (warning.code == "thin_features" && !is_any_cut);
   });
 }
 

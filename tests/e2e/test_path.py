@@ -112,10 +112,13 @@ set = ["tabu_patience=1", "tabu_samples=2"]
                 self.assertEqual(costs[told["variant"]], min(costs.values()))
             else:
                 self.assertEqual((told["variant"], len(told["parts"])), (variant, 1))
+                codes = [warning["code"] for warning in told["warnings"]]
+                self.assertEqual("sealed_cavity" in codes, variant == "hollow", "only a hollow ball in one piece traps support")
 
     def test_another_program_finds_the_parts_in_place(self):
         told = self.prepare("--profile", "objet30")
         self.assertGreater(len(told["parts"]), 1, "or there is nothing to be put in place")
+        self.assertNotIn("sealed_cavity", [warning["code"] for warning in told["warnings"]], "it is cut open")
         shown = {}
         for name in ("tray.3mf", "tray.stl"):
             done = subprocess.run(["prusa-slicer", "--info", self.folder / "job" / name], capture_output=True, text=True)

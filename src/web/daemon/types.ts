@@ -147,9 +147,9 @@ export type PackedReport = Report & { parts: Part[]; removal_order: number[] };
 export const isPacked = (report: Report): report is PackedReport =>
   (report.parts?.length ?? 0) > 0 && report.removal_order !== undefined;
 
-const ENDED: readonly JobState[] = ['done', 'handed_over', 'failed', 'cancelled'];
 // Of what was prepared. A program says what it takes itself, as it is.
 export const ownEstimate = ({ variant, estimates }: Job): Estimate | undefined =>
   estimates?.[variant === 'program' ? 'as_is' : variant || 'packed'];
 
+const ENDED: readonly JobState[] = ['done', 'handed_over', 'failed', 'cancelled'];
 export const hasEnded = (job: Job): boolean => ENDED.includes(job.state);
