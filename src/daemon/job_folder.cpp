@@ -80,8 +80,10 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.variant = report.value("variant", "packed");
     job.profile = report.value("profile", json::object()).value("id", "");
     job.seed = report.value("seed", std::int64_t{0});
+    const bool is_model = job.variant != kProgramVariant;
     for (const json& warning : report.value("warnings", json::array())) {
-      if (job.warning.empty()) job.warning = warning.at("text").get<std::string>();
+      const bool asks = !is_model || warning.at("code") == "suspicious_size";
+      if (asks && job.warning.empty()) job.warning = warning.at("text").get<std::string>();
     }
     if (const json* estimate = estimate_of(report.at("estimates"), job.variant)) {
       job.predicted_s = estimate->value("time_s", 0.0);
@@ -109,7 +111,7 @@ bool packing_pays(const PreparedJob& job) {
 }
 
 std::string doubt_about(const PreparedJob& job) {
-  if (job.variant == kProgramVariant) return job.warning;
+  if (job.variant == kProgramVariant || !job.warning.empty()) return job.warning;
   if (packing_pays(job)) return {};
   const json ways = json::parse(job.estimates, nullptr, false);
   const std::optional<double> packed = ways.is_object() ? cost_of(ways, "packed") : std::nullopt;

@@ -26,7 +26,7 @@ struct PreparedJob {
   std::string estimates;     // job.json's "estimates", JSON text
   double predicted_s = 0;    // by the estimate of that variant; 0: none
   std::string predicted_by;  // its source
-  std::string warning;       // the first one's text; empty: none
+  std::string warning;       // a program's first one, a model's of its size; empty: none
 };
 
 // Throws Error{kNoInput} when folder is no job folder, Error{kBadInput} when its job.json is not
@@ -41,8 +41,8 @@ Profile read_prepared_profile(const fs::path& folder);
 bool packing_pays(const PreparedJob& job);
 
 // Why somebody should look at the job before it is printed: a model whose packing does not pay (and
-// what does), or that was prepared another way; a program with a warning. Empty: nothing speaks
-// against printing it.
+// what does), that was prepared another way, or whose unit may be wrong; a program with a warning.
+// Empty: nothing speaks against printing it.
 std::string doubt_about(const PreparedJob& job);
 
 // What the printer is given of a tray: "program.gcode", "program-2.x3g", or the profile's document,

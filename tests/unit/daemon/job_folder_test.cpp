@@ -42,6 +42,20 @@ TEST(JobFolder, ReadsTheReport) {
   EXPECT_TRUE(packing_pays(job));
 }
 
+TEST(JobFolder, OnlyAWarningOfItsSizeIsADoubtAboutAModel) {
+  const TemporaryFolder folder;
+  const auto doubt = [&](const std::string& warnings) {
+    std::string report = kReport;
+    write(folder.path() / "job.json", report.insert(1, R"("warnings": [)" + warnings + "], "));
+    return doubt_about(read_prepared(folder.path()));
+  };
+  const std::string repaired = R"({"code": "repaired", "text": "3 holes filled"})";
+  EXPECT_EQ(doubt(""), "");
+  EXPECT_EQ(doubt(repaired), "");
+  EXPECT_EQ(doubt(repaired + R"(, {"code": "suspicious_size", "text": "it measures 2 mm"})"),
+            "it measures 2 mm");
+}
+
 TEST(JobFolder, RefusesWhatIsNoReport) {
   const TemporaryFolder folder;
   EXPECT_EQ(fault_of([&] { read_prepared(folder.path()); }), Fault::kNoInput);
