@@ -123,8 +123,8 @@ std::string doubt_about(const PreparedJob& job) {
   const std::string doubt =
       in_one_piece ? "it is in one piece, with nothing to pack" : "packing does not pay";
   if (!packed || way.empty()) return doubt;
-  if (cost < *packed - kSameCost) return doubt + ": " + way + " it costs less";
-  return in_one_piece ? doubt : doubt + ": " + way + " it costs as little";
+  if (cost < *packed - kSameCost) return doubt + ": printed " + way + " it costs less";
+  return in_one_piece ? doubt : doubt + ": printed " + way + " it costs as little";
 }
 
 std::string tray_file(const Profile& profile, int tray) {

@@ -105,12 +105,13 @@ TEST(Doubt, SaysWhatWasComparedAndChosen) {
     return doubt_about(job);
   };
   EXPECT_EQ(doubt("packed", 5, 7, 6, 4), "");
-  EXPECT_EQ(doubt("packed", 7, 7, 6, 4), "packing does not pay: hollow it costs less");
-  EXPECT_EQ(doubt("packed", 7, 6, 8, 4), "packing does not pay: solid it costs less");
-  EXPECT_EQ(doubt("packed", 7, 6.998, 8, 4), "packing does not pay: solid it costs as little");
+  EXPECT_EQ(doubt("packed", 7, 7, 6, 4), "packing does not pay: printed hollow it costs less");
+  EXPECT_EQ(doubt("packed", 7, 6, 8, 4), "packing does not pay: printed solid it costs less");
+  EXPECT_EQ(doubt("packed", 7, 6.998, 8, 4),
+            "packing does not pay: printed solid it costs as little");
   EXPECT_EQ(doubt("packed", 7, 7, 8, 1), "it is in one piece, with nothing to pack");
   EXPECT_EQ(doubt("packed", 7, 8, 6, 1),
-            "it is in one piece, with nothing to pack: hollow it costs less");
+            "it is in one piece, with nothing to pack: printed hollow it costs less");
   EXPECT_EQ(doubt("solid", 5, 7, 6, 4), "prepared solid, not packed") << "it would have paid";
   EXPECT_EQ(doubt("hollow", 7, 8, 6, 4), "prepared hollow: packing does not pay");
   PreparedJob job;
