@@ -1,6 +1,9 @@
 // The real daemon, with a stand-in for packmerger prepare and simulated printers.
 #include "unit/daemon/running_daemon.h"
 
+#include <algorithm>
+#include <set>
+
 namespace packmerger {
 namespace {
 
@@ -143,7 +146,9 @@ TEST_F(PackmergerdTest, AnswersWhileManyFilesArriveAtOnce) {
   const auto count = [&] { return ask({{"verb", "jobs.list"}, {"limit", 1000}}).size(); };
   std::set<std::size_t> told;
   EXPECT_TRUE(wait_until([&] { return *told.insert(count()).first == kFiles; })) << messages();
-  EXPECT_GE(told.size(), 4u) << "asked between one file and the next, not after the last";
+  EXPECT_TRUE(std::any_of(told.begin(), told.end(), [](std::size_t jobs) {
+    return jobs > 0 && jobs < kFiles;
+  })) << "asked between one file and the next, not after the last";
   EXPECT_EQ(end(SIGTERM).code, 0);
 }
 
