@@ -14,11 +14,17 @@ export function Timeline({ job }: { job: Job }) {
           return (
             <li key={index} class={badge.tone}>
               <time dateTime={new Date(1000 * event.at_s).toISOString()}>{when(event.at_s)}</time>
-              <span>{badge.text}{event.note ? <span class="quiet-text">: {event.note}</span> : null}</span>
+              <Step badge={badge.text} note={event.note} />
             </li>
           );
         })}
       </ol>
     </section>
   );
+}
+
+// A note that begins with what the badge says stands alone.
+function Step({ badge, note }: { badge: string; note: string }) {
+  if (note.toLowerCase().startsWith(badge.toLowerCase())) return <span>{badge}{note.slice(badge.length)}</span>;
+  return <span>{badge}{note ? <span class="quiet-text">: {note}</span> : null}</span>;
 }
