@@ -74,13 +74,13 @@ const std::optional<Correction>& Foreman::correction(const std::string& printer,
 }
 
 void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
-                  const std::string& hint, const std::string& note) {
+                  const std::string& hint, const std::string& note, const PrinterRecord* printer) {
   job.state = state;
   job.reason = reason;
   job.hint = hint;
   job.ended_s = wall_clock_s();
   job.filing_done = job.input.empty();
-  store_.save(job, note.empty() ? reason : note);
+  store_.save(job, note.empty() ? reason : note, printer);
   say(job, std::string(state_name(state)) + (reason.empty() ? "" : ": " + reason));
 }
 

@@ -121,7 +121,7 @@ class Foreman {
   LiveJob& get_printing(const std::string& printer);
   void say(const JobRecord& job, const std::string& text) const;
   void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
-           const std::string& note = {});
+           const std::string& note = {}, const PrinterRecord* printer = nullptr);
 
   JobRecord begun(const PrinterConfig& printer, const std::filesystem::path& origin,
                   bool with_settings);

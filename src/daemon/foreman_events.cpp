@@ -187,10 +187,10 @@ PrinterRecord Foreman::with_bed_as_before(const JobRecord& job, const SendEnded&
 }
 
 void Foreman::end_untouched(JobRecord job, const SendEnded& event) {
-  store_.save(with_bed_as_before(job, event));
+  const PrinterRecord record = with_bed_as_before(job, event);
   if (event.outcome == SendOutcome::kFailed)
-    return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint);
-  end(job, JobState::kCancelled, "cancelled before the print began", "");
+    return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint, "", &record);
+  end(job, JobState::kCancelled, "cancelled before the print began", "", "", &record);
 }
 
 // It is tried again, by the next daemon where this one ends.

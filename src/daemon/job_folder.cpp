@@ -54,17 +54,31 @@ std::optional<double> cost_of(const json& estimates, const std::string& way) {
   return cost->get<double>();
 }
 
-struct UnpackedWay {
-  std::string words;  // "hollow"; empty: none fits
-  double cost = 0;
+// What packing is weighed against.
+struct Weighed {
+  std::optional<double> packed;  // its cost; nothing: it does not fit
+  bool in_one_piece = false;     // nothing was there to be packed
+  std::string unpacked;          // the cheapest other way, in words; empty: none fits
+  double unpacked_cost = std::numeric_limits<double>::infinity();
 };
 
-UnpackedWay cheapest_unpacked(const json& ways) {
-  UnpackedWay best{"", std::numeric_limits<double>::infinity()};
+Weighed weighed(const PreparedJob& job) {
+  const json ways = json::parse(job.estimates, nullptr, false);
+  Weighed result;
+  if (!ways.is_object()) return result;
+  result.packed = cost_of(ways, "packed");
+  result.in_one_piece = result.packed && estimate_of(ways, "packed")->value("parts", 0) == 1;
   for (const auto& [way, words] :
        {std::pair{"solid", "solid"}, {"hollow", "hollow"}, {"as_is", "as its file stands"}})
-    if (const auto cost = cost_of(ways, way); cost && *cost < best.cost) best = {words, *cost};
-  return best;
+    if (const auto cost = cost_of(ways, way); cost && *cost < result.unpacked_cost) {
+      result.unpacked = words;
+      result.unpacked_cost = *cost;
+    }
+  return result;
+}
+
+bool pays(const PreparedJob& job, const Weighed& ways) {
+  return job.variant == "packed" && ways.packed && ways.unpacked_cost > *ways.packed;
 }
 
 }  // namespace
@@ -102,29 +116,22 @@ Profile read_prepared_profile(const fs::path& folder) {
   return read_profile(fs::absolute(folder / "profile.toml").string());
 }
 
-bool packing_pays(const PreparedJob& job) {
-  const json ways = json::parse(job.estimates, nullptr, false);
-  if (job.variant != "packed" || !ways.is_object()) return false;
-  const std::optional<double> packed = cost_of(ways, "packed");
-  if (!packed) return false;
-  return cheapest_unpacked(ways).cost > *packed;
-}
+bool packing_pays(const PreparedJob& job) { return pays(job, weighed(job)); }
 
 std::string doubt_about(const PreparedJob& job) {
   if (job.variant == kProgramVariant || !job.warning.empty()) return job.warning;
-  if (packing_pays(job)) return {};
-  const json ways = json::parse(job.estimates, nullptr, false);
-  const std::optional<double> packed = ways.is_object() ? cost_of(ways, "packed") : std::nullopt;
-  const auto [way, cost] = cheapest_unpacked(ways);
+  const Weighed ways = weighed(job);
+  if (pays(job, ways)) return {};
   if (job.variant != "packed")
-    return packed && cost <= *packed ? "prepared " + job.variant + ": packing does not pay"
-                                     : "prepared " + job.variant + ", not packed";
-  const bool in_one_piece = packed && estimate_of(ways, "packed")->value("parts", 0) == 1;
+    return ways.packed && ways.unpacked_cost <= *ways.packed
+               ? "prepared " + job.variant + ": packing does not pay"
+               : "prepared " + job.variant + ", not packed";
   const std::string doubt =
-      in_one_piece ? "it is in one piece, with nothing to pack" : "packing does not pay";
-  if (!packed || way.empty()) return doubt;
-  if (cost < *packed - kSameCost) return doubt + ": printed " + way + " it costs less";
-  return in_one_piece ? doubt : doubt + ": printed " + way + " it costs as little";
+      ways.in_one_piece ? "it is in one piece, with nothing to pack" : "packing does not pay";
+  if (!ways.packed || ways.unpacked.empty()) return doubt;
+  const std::string printed = doubt + ": printed " + ways.unpacked;
+  if (ways.unpacked_cost < *ways.packed - kSameCost) return printed + " it costs less";
+  return ways.in_one_piece ? doubt : printed + " it costs as little";
 }
 
 std::string tray_file(const Profile& profile, int tray) {

@@ -7,16 +7,18 @@
 
 namespace packmerger {
 
-// JSON text; null where it holds no object.
-inline nlohmann::json object_or_null(const std::string& text) {
-  nlohmann::json object = nlohmann::json::parse(text, nullptr, false);
-  return object.is_object() ? object : nlohmann::json();
+// JSON text; null where it holds nothing of that type.
+inline nlohmann::json parsed_or_null(const std::string& text, nlohmann::json::value_t type) {
+  nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+  return value.type() == type ? value : nlohmann::json();
 }
 
-// JSON text; null where it holds no list.
+inline nlohmann::json object_or_null(const std::string& text) {
+  return parsed_or_null(text, nlohmann::json::value_t::object);
+}
+
 inline nlohmann::json list_or_null(const std::string& text) {
-  nlohmann::json list = nlohmann::json::parse(text, nullptr, false);
-  return list.is_array() ? list : nlohmann::json();
+  return parsed_or_null(text, nlohmann::json::value_t::array);
 }
 
 inline nlohmann::json or_null(double value) {

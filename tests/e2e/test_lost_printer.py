@@ -211,7 +211,8 @@ simulated = {str(simulated).lower()}
         return next(printer["bed"] for printer in told if printer["name"] == "m")
 
     def connects(self, daemon):
-        return self.shown(daemon)["state"] == "sending" and self.shown(daemon)["progress"]["stage"] == "connecting"
+        job = self.shown(daemon)
+        return job["state"] == "sending" and job["progress"]["stage"] == "connecting"
 
     def test_what_ends_before_it_began_leaves_the_bed_clear(self):
         self.job("marlin")

@@ -133,6 +133,14 @@ TEST_F(DevicesOfThePrinters, WhatIsHandedOverIsNotConnected) {
   EXPECT_EQ(shop_.ask({{"verb", "printers.list"}}).at("result").at(0).at("connected"), nullptr);
 }
 
+// Job 1 is with the sender of a printer whose bed was clear.
+void send_one(Workshop& shop) {
+  shop.foreman_->clear("real");
+  shop.drop("real", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  ASSERT_TRUE(shop.send_order("real"));
+}
+
 TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
   struct Ending {
     SendOutcome outcome;
@@ -151,10 +159,7 @@ TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
             "cancelled while printing"},
            {SendOutcome::kFailed, refused, false, JobState::kFailed, refused.what}}) {
     Workshop shop;
-    shop.foreman_->clear("real");
-    shop.drop("real", "a.stl");
-    shop.prepare(*shop.prepare_order());
-    ASSERT_TRUE(shop.send_order("real"));
+    ASSERT_NO_FATAL_FAILURE(send_one(shop));
     EXPECT_FALSE(shop.store_->printer("real").bed_clear);
     SendEnded end{1, ending.outcome, ending.failure, ""};
     end.untouched = ending.untouched;
@@ -167,10 +172,7 @@ TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
 
 TEST(Foreman, AStopBeforeThePrintBeganLosesNothing) {
   Workshop shop;
-  shop.foreman_->clear("real");
-  shop.drop("real", "a.stl");
-  shop.prepare(*shop.prepare_order());
-  ASSERT_TRUE(shop.send_order("real"));
+  ASSERT_NO_FATAL_FAILURE(send_one(shop));
   shop.foreman_->stop();
   SendEnded end{1, SendOutcome::kCancelled, {Fault::kInterrupted, "Cancelled", ""}, ""};
   end.untouched = true;
@@ -185,10 +187,7 @@ TEST(Foreman, WhatWasCancelledIsNotTriedAgain) {
   for (const Fault fault : {Fault::kUnavailable, Fault::kBusy})
     for (const bool is_stopping : {false, true}) {
       Workshop shop;
-      shop.foreman_->clear("real");
-      shop.drop("real", "a.stl");
-      shop.prepare(*shop.prepare_order());
-      ASSERT_TRUE(shop.send_order("real"));
+      ASSERT_NO_FATAL_FAILURE(send_one(shop));
       shop.foreman_->cancel(1);
       if (is_stopping) shop.foreman_->stop();
       SendEnded end{1, SendOutcome::kNotStarted, {fault, "Nobody answers", ""}, ""};
