@@ -31,11 +31,18 @@ constexpr std::array<std::string_view, 8> kDerived{"bed_shape",
                                                    "use_relative_e_distances",
                                                    "gcode_comments"};
 
+// What PrusaSlicer would run when it has sliced.
+constexpr std::string_view kRunsPrograms = "post_process";
+
 std::optional<double> number(std::string_view text) {
   double value = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+bool is_empty(std::string_view value) {
+  return value.find_first_not_of(" \t\r\n\";") == std::string_view::npos;
 }
 
 double option(const Profile& profile, const std::string& name, double otherwise) {
@@ -137,6 +144,10 @@ SlicerConfig slicer_config(const Profile& profile, SliceFlavour flavour, double 
     if (name.empty() ||
         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
       throw bad_option(name, "is no name of an option");
+    if (name == kRunsPrograms) {
+      if (is_empty(value)) continue;
+      throw bad_option(name, "would run other programs whenever something is sliced");
+    }
     config.values[name] = value.find('\n') == std::string::npos ? value : escaped(value);
   }
   config.values["bed_shape"] = bed_shape(profile);
@@ -177,8 +188,9 @@ std::map<std::string, std::string> settings_used(std::string_view gcode) {
 
 void check_settings_used(const Profile& profile, const std::map<std::string, std::string>& used) {
   for (const auto& [name, value] : profile.slicer.options) {
-    if (name == "gcode_flavor" || name == "skirts" || name == "raft_first_layer_expansion")
-      continue;  // may be ours
+    if (name == "gcode_flavor" || name == "skirts" || name == "raft_first_layer_expansion" ||
+        name == kRunsPrograms)
+      continue;  // may be ours, or was not passed on
     const auto found = used.find(name);
     if (found == used.end()) throw bad_option(name, "is not known to PrusaSlicer");
     if (!same_value(found->second, escaped(value)) && !same_value(found->second, value))

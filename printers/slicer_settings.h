@@ -16,8 +16,9 @@ struct SlicerConfig {
 };
 
 // room_mm: from the contents to the nearest side of the build volume, seen from above.
-// Throws Error{kBadProfile} where slicer.options names what follows from the profile's other keys,
-// or a name that cannot be one.
+// An empty post_process, which most exported settings have, is dropped. Throws Error{kBadProfile}
+// where slicer.options names programs to run there, names what follows from the profile's other
+// keys, or a name that cannot be one.
 SlicerConfig slicer_config(const Profile& profile, SliceFlavour flavour, double room_mm);
 
 // The file's text.

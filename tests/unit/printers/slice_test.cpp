@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "fixtures/profiles.h"
 #include "printers/check_moves.h"
 #include "printers/estimate.h"
@@ -194,6 +195,27 @@ TEST(Slice, TellsWhatTheSlicerSays) {
   EXPECT_EQ(
       error_of([&] { slice(garbled, small_cube(), SliceFlavour::kProgram, Progress()); }).first,
       Fault::kBadProfile);
+}
+
+TEST(Slice, SettingsRunNoPrograms) {
+  const TemporaryFolder folder;
+  const std::string mark = (folder.path() / "it-ran").string();
+  for (const std::string& value : {"/usr/bin/touch " + mark, "\"\";/usr/bin/touch " + mark}) {
+    Profile profile = replicator();
+    profile.slicer.options["post_process"] = value;
+    const auto [fault, text] =
+        error_of([&] { slice(profile, small_cube(), SliceFlavour::kFigures, Progress()); });
+    EXPECT_EQ(fault, Fault::kBadProfile);
+    EXPECT_NE(text.find("post_process"), std::string::npos) << text;
+    EXPECT_FALSE(fs::exists(mark));
+  }
+  // what nearly every exported settings file has
+  for (const char* nothing : {"", " ", "\"\""}) {
+    Profile profile = replicator();
+    profile.slicer.options = {{"perimeters", "2"}, {"post_process", nothing}};
+    EXPECT_EQ(slicer_config(profile, SliceFlavour::kFigures, 50).values.count("post_process"), 0U);
+    EXPECT_NO_THROW(check_settings_used(profile, {{"perimeters", "2"}}));
+  }
 }
 
 TEST(Slice, MissingSlicerIsSaidWithItsInstallLine) {
