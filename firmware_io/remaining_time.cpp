@@ -1,70 +1,18 @@
 #include "firmware_io/remaining_time.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 #include "firmware_io/gcode.h"
 #include "firmware_io/s3g.h"
+#include "gcode/gcode_motion.h"
 
 namespace packmerger {
 
 namespace {
 
 constexpr std::size_t kMostMarks = 1000;
-
-// The value of a command's parameter, as that of 'R' in "M73 P10 R25".
-std::optional<double> parameter(std::string_view command, char letter) {
-  for (std::size_t i = 1; i + 1 < command.size(); ++i)
-    if (command[i] == letter && command[i - 1] == ' ')
-      return std::strtod(std::string(command.substr(i + 1)).c_str(), nullptr);
-  return std::nullopt;
-}
-
-// The time of one command after the other, acceleration left out.
-class Moves {
- public:
-  double seconds(std::string_view command) {
-    const std::string_view word = gcode_word(command);
-    if (word == "G90") relative_ = relative_e_ = false;
-    if (word == "G91") relative_ = relative_e_ = true;
-    if (word == "M82") relative_e_ = false;
-    if (word == "M83") relative_e_ = true;
-    if (word == "G4")
-      return parameter(command, 'S').value_or(parameter(command, 'P').value_or(0) / 1000);
-    const bool moves = word == "G0" || word == "G1";
-    if (!moves && word != "G92") return 0;
-    if (const auto feed = parameter(command, 'F'); feed && *feed > 0) feed_mm_s_ = *feed / 60;
-    const double way_mm = go(command, moves);
-    return moves && feed_mm_s_ > 0 ? way_mm / feed_mm_s_ : 0;
-  }
-
- private:
-  double go(std::string_view command, bool moves) {
-    constexpr std::array<char, 4> kAxes = {'X', 'Y', 'Z', 'E'};
-    double squared_mm = 0;
-    double extruded_mm = 0;
-    for (std::size_t i = 0; i < kAxes.size(); ++i) {
-      const auto to = parameter(command, kAxes[i]);
-      if (!to) continue;
-      const bool relative = moves && (i < 3 ? relative_ : relative_e_);
-      const double way_mm = relative ? *to : *to - at_mm_[i];
-      at_mm_[i] += way_mm;
-      if (i < 3)
-        squared_mm += way_mm * way_mm;
-      else
-        extruded_mm = std::abs(way_mm);
-    }
-    return squared_mm > 0 ? std::sqrt(squared_mm) : extruded_mm;
-  }
-
-  std::array<double, 4> at_mm_{};
-  bool relative_ = false;
-  bool relative_e_ = false;
-  double feed_mm_s_ = 0;
-};
 
 // Keeps every n-th mark, and the last.
 class Marks {
@@ -83,12 +31,17 @@ class Marks {
   std::vector<TimeMark> marks_;
 };
 
+// What "M73 R25" tells; nothing for other commands.
+std::optional<double> minutes_left(std::string_view command) {
+  const GcodeLine line(command, GcodeRules::kMarlin);
+  return line.is('M', 73) ? line.value('R') : std::nullopt;
+}
+
 std::vector<TimeMark> slicer_marks(const std::vector<GcodeCommand>& commands) {
   std::vector<TimeMark> marks;
   double total_s = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (gcode_word(commands[i].text) != "M73") continue;
-    const auto left_min = parameter(commands[i].text, 'R');
+    const std::optional<double> left_min = minutes_left(commands[i].text);
     if (!left_min) continue;
     if (marks.empty()) total_s = 60 * *left_min;
     const double expected_s = total_s - 60 * *left_min;
@@ -122,13 +75,17 @@ double seconds_of(std::string_view action) {
 
 }  // namespace
 
+bool has_slicer_marks(const std::vector<GcodeCommand>& commands) {
+  return !slicer_marks(commands).empty();
+}
+
 std::vector<TimeMark> time_marks(const std::vector<GcodeCommand>& commands) {
   if (std::vector<TimeMark> marks = slicer_marks(commands); !marks.empty()) return marks;
-  Moves moves;
+  GcodeMotion motion(GcodeRules::kMarlin);
   Marks marks(commands.size());
   double expected_s = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    expected_s += moves.seconds(commands[i].text);
+    expected_s += motion.follow(GcodeLine(commands[i].text, GcodeRules::kMarlin)).time_s;
     marks.add(i + 1, expected_s, i + 1 == commands.size());
   }
   return marks.take();

@@ -16,6 +16,9 @@ struct TimeMark {
   double expected_s = 0;
 };
 
+// Whether the program carries its slicer's clock: at least two marks (M73 R, minutes left).
+bool has_slicer_marks(const std::vector<GcodeCommand>& commands);
+
 // From the slicer's marks (M73 R, minutes left) where the program has them, otherwise from the
 // lengths and speeds of its moves and its dwells; heating and homing count nothing. done: commands.
 std::vector<TimeMark> time_marks(const std::vector<GcodeCommand>& commands);

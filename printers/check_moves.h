@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/geometry.h"
+#include "gcode/gcode_line.h"
 #include "model/printer.h"
 
 namespace packmerger {
@@ -21,12 +22,15 @@ struct MoveFault {
 // The volume that may be printed in, in the machine's own coordinates.
 Box3 machine_volume(const Profile& profile);
 
-// Understands G0 G1 G2 G3 (I J and R), G20 G21, G90 G91, G92, M82 M83, homing (G28, G161, G162) and
-// position recall (M132); line numbers, checksums, both kinds of comments. Lines are judged by
-// their ends, arcs by their true extent, to 0.01 mm. An axis is unknown before it was homed or set;
-// after G28 it stands at 0, after G161, G162 and M132 it is unknown until it is told by G92 or an
-// absolute move. Moves along an unknown axis pass, extruding ones do not. G92 on a known axis
-// shifts the coordinates and moves nothing. Codes that move in ways not listed are faults.
-std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume);
+// Whose reading counts for this profile's programs.
+GcodeRules gcode_rules(const Profile& profile);
+
+// Lines are judged by their ends, arcs by their true extent, to 0.01 mm, as gcode/gcode_motion.h
+// follows them. After G28 an axis stands at 0 (for gpx nobody knows where); after G161 and G162 it
+// is unknown until it is recalled by M132 or set by G92. Moves along an axis that was never homed,
+// recalled or set pass as long as nothing is extruded. G92 on a known axis shifts the coordinates
+// and moves nothing. A command that cannot be followed is a fault (gcode/known_codes.h): what is
+// unknown is not judged.
+std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume, GcodeRules rules);
 
 }  // namespace packmerger

@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include "gcode/gcode_line.h"
+
 namespace packmerger {
 
 // mm of filament pushed out while the head moves, for everything but support, and for support
@@ -13,7 +15,8 @@ struct Extruded {
   double support_mm = 0;
 };
 
-// Understands absolute and relative extrusion (M82, M83, G90, G91, G92).
-Extruded extruded(std::string_view gcode);
+// As gcode/gcode_motion.h reads it: arcs, inches, filament counted in mm³ and M221 included. A
+// whole circle that names neither X nor Y moves the head too.
+Extruded extruded(std::string_view gcode, GcodeRules rules);
 
 }  // namespace packmerger

@@ -8,8 +8,8 @@
 
 #include "base/files.h"
 #include "base/process.h"
+#include "gcode/gcode_line.h"
 #include "printers/check_moves.h"
-#include "printers/gcode_line.h"
 #include "printers/slice.h"
 
 namespace packmerger {
@@ -23,7 +23,7 @@ constexpr char kEndOfBuild = '\x9A';
 bool has_one_of(std::string_view gcode, std::initializer_list<std::pair<char, int>> commands) {
   bool found = false;
   for_each_line(gcode, [&](std::string_view text, int) {
-    const GcodeLine line(text);
+    const GcodeLine line(text, GcodeRules::kGpx);
     for (const auto& [letter, number] : commands) found = found || line.is(letter, number);
     return !found;
   });
@@ -49,7 +49,8 @@ void check_s3g_start(const Profile& profile) {
 }
 
 void check_volume(const Profile& profile, std::string_view gcode) {
-  const std::optional<MoveFault> fault = check_moves(gcode, machine_volume(profile));
+  const std::optional<MoveFault> fault =
+      check_moves(gcode, machine_volume(profile), gcode_rules(profile));
   if (!fault) return;
   throw Error(
       Fault::kBadProfile,

@@ -127,7 +127,8 @@ SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
   sliced.time_s = slicer_seconds(after(sliced.gcode, "; estimated printing time (normal mode) = "));
   const double diameter_mm = std::stod(used.at("filament_diameter"));
   const double section_mm2 = std::numbers::pi * diameter_mm * diameter_mm / 4;
-  const Extruded length = extruded(sliced.gcode);
+  const Extruded length = extruded(
+      sliced.gcode, flavour == SliceFlavour::kFigures ? GcodeRules::kMarlin : gcode_rules(profile));
   sliced.model_mm3 = length.model_mm * section_mm2;
   sliced.model_g = sliced.model_mm3 / 1000 * profile.material.model_density_g_cm3;
   sliced.support_mm3 = length.support_mm * section_mm2;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "printers/gcode_line.h"
+#include "gcode/gcode_line.h"
 
 namespace packmerger {
 namespace {

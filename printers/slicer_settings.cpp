@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/gcode_line.h"
 #include "printers/check_moves.h"
-#include "printers/gcode_line.h"
 
 namespace packmerger {
 namespace {

@@ -41,9 +41,7 @@ void take_time(ReadyProgram& program, const SlicerComments& told, std::string_vi
   Estimate& estimate = program.estimate;
   const std::vector<GcodeCommand> commands = gcode_commands(gcode);
   // M73 with the minutes that are left is the slicer's own clock too
-  const bool has_marks = std::any_of(commands.begin(), commands.end(), [](const auto& command) {
-    return gcode_word(command.text) == "M73" && command.text.find(" R") != std::string_view::npos;
-  });
+  const bool has_marks = has_slicer_marks(commands);
   estimate.source = told.time_s || has_marks ? EstimateSource::kProgram : EstimateSource::kMoves;
   estimate.time_s = told.time_s ? *told.time_s : seconds_of(time_marks(commands));
 }
@@ -53,7 +51,7 @@ void take_material(ReadyProgram& program, const SlicerComments& told, std::strin
   const double section_mm2 = filament_section_mm2(program.profile);
   Estimate& estimate = program.estimate;
   if (!told.filament_mm3 && !told.filament_mm && !told.filament_g) {
-    const Extruded length = extruded(gcode);
+    const Extruded length = extruded(gcode, gcode_rules(program.profile));
     estimate.model_mm3 = length.model_mm * section_mm2;
     estimate.support_mm3 = length.support_mm * section_mm2;
     estimate.support_g = estimate.support_mm3 / 1000 * material.support_density_g_cm3;
@@ -68,7 +66,8 @@ void take_material(ReadyProgram& program, const SlicerComments& told, std::strin
 }
 
 void judge_moves(ReadyProgram& program, std::string_view gcode) {
-  const auto fault = check_moves(gcode, machine_volume(program.profile));
+  const auto fault =
+      check_moves(gcode, machine_volume(program.profile), gcode_rules(program.profile));
   if (!fault) return;
   program.warnings.push_back(
       {"moves_not_judged", fmt::format("Line {} of the program, \"{}\", {}", fault->line,

@@ -15,14 +15,15 @@ MAY_INCLUDE = {
     "model": {"base"},
     "offscreen": {"model", "base"},
     "shape": {"model", "base"},
-    "printers": {"model", "base"},
+    "gcode": {"base"},
+    "printers": {"gcode", "model", "base"},
     "pack": {"model", "base"},
     "picture": {"offscreen", "model", "base"},
     "tray": {"picture", "model", "base"},
-    "firmware_io": {"base"},
+    "firmware_io": {"gcode", "base"},
     "http": {"base"},
     "notify": {"base"},
-    "job": {"tray", "picture", "pack", "printers", "shape", "offscreen", "model", "base"},
+    "job": {"tray", "picture", "pack", "printers", "gcode", "shape", "offscreen", "model", "base"},
 }
 EVERYTHING = {"daemon", "cli", "install"}
 FOLDERS = set(MAY_INCLUDE) | EVERYTHING

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import pathlib
+import shutil
 import sys
 import tempfile
 import time
@@ -101,6 +102,26 @@ class Prepare(unittest.TestCase):
         warning = json.loads(result.out)["warnings"][0]
         self.assertEqual(warning["code"], "moves_not_judged")
         self.assertIn("X 500", warning["text"])
+
+    def test_what_cannot_be_judged_is_a_warning_with_its_line(self):
+        for lines, words in ((["G92 E0", "G1 X100 Y100 Z0.2 F3000", "G1 X120 E1"], "neither homed nor set"),
+                             (["G28", "M600"], "moves by itself"), (["G28", "M211 S0"], "a limit"),
+                             (["G28", "M350 X16"], "what coordinates mean"), (["G28", "M808 L9"], "does not show"),
+                             (["G28", "M1234"], "not known")):
+            result = self.prepare("\n".join(["G21", *lines, ""]).encode(), "marlin", "--json")
+            self.assertEqual(result.code, 0, str(result))
+            warning = json.loads(result.out)["warnings"][0]
+            self.assertEqual(warning["code"], "moves_not_judged")
+            self.assertIn(words, warning["text"])
+            self.assertIn(f"Line {1 + len(lines)} ", warning["text"])
+            shutil.rmtree(self.folder / "job")
+
+    def test_arcs_take_their_time(self):
+        arcs = [f"G2 X{150 - 100 * (i % 2)} Y100 R50 E{i + 1} F300" for i in range(10)]
+        result = self.prepare("\n".join(["G28", "G1 X50 Y100 Z0.2 F6000", *arcs, ""]).encode(), "marlin", "--json")
+        told = json.loads(result.out)
+        self.assertEqual(told["warnings"], [])
+        self.assertAlmostEqual(told["estimates"]["as_is"]["time_s"], 10 * 3.14159 * 50 / 5, delta=2)
 
     def test_gcode_for_a_replicator_is_converted(self):
         result = self.prepare(gcode(), "replicator")

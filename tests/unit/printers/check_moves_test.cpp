@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "fixtures/profiles.h"
-#include "printers/gcode_line.h"
 
 namespace packmerger {
 namespace {
@@ -12,33 +11,10 @@ const Box3 kCentred(Vec3(-112.5, -72.5, 0), Vec3(112.5, 72.5, 150));
 const Box3 kFrontLeft(Vec3(0, 0, 0), Vec3(220, 220, 250));
 
 // The line of the first fault, 0 where there is none.
-int fault_line(std::string_view gcode, const Box3& volume = kFrontLeft) {
-  const auto fault = check_moves(gcode, volume);
+int fault_line(std::string_view gcode, const Box3& volume = kFrontLeft,
+               GcodeRules rules = GcodeRules::kMarlin) {
+  const auto fault = check_moves(gcode, volume, rules);
   return fault ? fault->line : 0;
-}
-
-TEST(GcodeLine, TakesALineApart) {
-  const GcodeLine line("N12 g1 X-1.5 Y .25 (a comment X99) E+2 F1200*71 ; more");
-  EXPECT_TRUE(line.is('G', 1));
-  EXPECT_EQ(line.value('X'), -1.5);
-  EXPECT_EQ(line.value('Y'), 0.25);
-  EXPECT_EQ(line.value('E'), 2);
-  EXPECT_EQ(line.value('F'), 1200);
-  EXPECT_FALSE(line.has('Z'));
-  EXPECT_TRUE(line.readable());
-}
-
-TEST(GcodeLine, WordsAloneSubCodesAndText) {
-  const GcodeLine home("G28 X Y");
-  EXPECT_TRUE(home.has('X'));
-  EXPECT_FALSE(home.value('X'));
-  EXPECT_EQ(GcodeLine("G92.1").sub_number(), 1);
-  EXPECT_FALSE(GcodeLine("G92.1").is('G', 92));
-  EXPECT_EQ(GcodeLine("").letter(), 0);
-  EXPECT_EQ(GcodeLine("; G1 X5").letter(), 0);
-  EXPECT_EQ(GcodeLine("T1").letter(), 'T');
-  EXPECT_FALSE(GcodeLine("G1 X5 #3").readable());
-  EXPECT_FALSE(GcodeLine("hello").readable());
 }
 
 TEST(MachineVolume, FollowsTheOrigin) {
@@ -55,11 +31,12 @@ TEST(CheckMoves, InsideIsInside) {
   EXPECT_EQ(fault_line(""), 0);
   EXPECT_EQ(fault_line("G28\nG1 X0 Y0 Z0\nG1 X220 Y220 Z250 E9\nM104 S0\n; G1 X999\n"), 0);
   EXPECT_EQ(fault_line("G1 X220.009 Y0 Z1"), 0);
-  EXPECT_EQ(fault_line("G1 X-112.5 Y72.5 Z0.2\r\nG1 X112.5 E1\r\n", kCentred), 0);
+  EXPECT_EQ(fault_line("G28\r\nG1 X-112.5 Y72.5 Z0.2\r\nG1 X112.5 E1\r\n", kCentred), 0);
 }
 
 TEST(CheckMoves, TellsWhichMoveAndHowFarOut) {
-  const auto fault = check_moves("G28\nG1 X10 Y10 Z1\nG1 X113.2 E5 ; skirt\nG1 X999\n", kCentred);
+  const auto fault = check_moves("G28\nG1 X10 Y10 Z1\nG1 X113.2 E5 ; skirt\nG1 X999\n", kCentred,
+                                 GcodeRules::kMarlin);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->line, 3);
   EXPECT_EQ(fault->command, "G1 X113.2 E5 ; skirt");
@@ -127,19 +104,32 @@ TEST(CheckMoves, ArcsThatCannotBeJudgedAreFaults) {
 
 TEST(CheckMoves, ExtrudingWhereNobodyKnowsIsAFault) {
   EXPECT_EQ(fault_line("G1 X10 Y10 E1"), 1);
-  EXPECT_EQ(fault_line("G1 X10 Y10\nG1 X20 E1"), 2);  // Z unknown
-  EXPECT_EQ(fault_line("G1 X10 Y10 Z1\nG1 X20 E1"), 0);
+  EXPECT_EQ(fault_line("G1 X10 Y10\nG1 X20 E1"), 2);
+  EXPECT_EQ(fault_line("G1 X10 Y10 Z1\nG1 X20 E1"), 2);  // never homed
+  EXPECT_EQ(fault_line("G28 X Y\nG1 X10 Y10 Z1\nG1 X20 E1"), 3);
+  EXPECT_EQ(fault_line("G92 X0 Y0 Z0\nG1 X10 Y10 Z1\nG1 X20 E1"), 0);
   EXPECT_EQ(fault_line("G1 E5 F300"), 0);  // filament alone
-  EXPECT_EQ(fault_line("G28\nG1 X9 E2\nM132 X Y Z A B\nG1 X10 Y5 E3"), 4);
-  EXPECT_EQ(fault_line("G28\nM83\nG1 X9 E1\nG162 X Y F2000\nG1 X5 E1"), 5);
-  EXPECT_EQ(fault_line("G28\nM83\nG1 X9 E1\nG162 X Y F2000\nG1 X5 E-1"), 0);  // drawn back
+  EXPECT_EQ(fault_line("G28\nM84\nG1 X9 E1"), 3);
+  EXPECT_EQ(fault_line("G28\nG29\nG1 X9 E1"), 0);  // somewhere above the bed
+}
+
+TEST(CheckMoves, AReplicatorKnowsWhereItIsOnceItIsTold) {
+  const auto line = [](const std::string& text) {
+    return fault_line(text, kCentred, GcodeRules::kGpx);
+  };
+  const std::string homed = "M83\nG162 X Y F2000\nG161 Z F900\n";
+  EXPECT_EQ(line(homed + "G1 X5 Y5 Z1 F600\nG1 X9 E1"), 5);
+  EXPECT_EQ(line(homed + "M132 X Y Z A B\nG1 X5 Y5 Z1 F600\nG1 X9 E1"), 0);
+  EXPECT_EQ(line("M83\nG28\nG1 X9 Y9 Z1\nG1 X5 E1"), 4);
+  EXPECT_EQ(line("M83\nG92 X0 Y0 Z0\nG1 X9 E1\nG162 X Y F2000\nG1 X5 E1"), 5);
+  EXPECT_EQ(line("M83\nG92 X0 Y0 Z0\nG1 X9 E1\nG162 X Y F2000\nG1 X5 E-1"), 0);  // drawn back
 }
 
 TEST(CheckMoves, WhatItCannotFollowIsAFault) {
   for (const char* code : {"G5 X1 Y1 I1 J1", "G53", "G54", "G92.1", "G1 X", "G1 X5 G91", "G1 X1#2",
-                           "M206 X10", "M428", "G19", "G68", "X500"})
+                           "M206 X10", "M428", "G19", "G68", "X500", "M600", "M808 L3", "g1 X5"})
     EXPECT_EQ(fault_line(std::string("G28\n") + code), 2) << code;
-  for (const char* code : {"G4 P100", "M117 Go home now", "T0", "M73 P50", "G10", "G29", "G130 X0"})
+  for (const char* code : {"G4 P100", "M117 Go home now", "T0", "M73 P50", "G10", "G29"})
     EXPECT_EQ(fault_line(std::string("G28\n") + code), 0) << code;
 }
 
@@ -150,7 +140,8 @@ TEST(CheckMoves, TheShippedStartAndEndTextsStayInside) {
     std::string end = profile.slicer.end_gcode;
     while (end.find('{') != std::string::npos)
       end.erase(end.find('{'), end.find('}', end.find('{')) - end.find('{') + 1);
-    const auto fault = check_moves(profile.slicer.start_gcode, machine_volume(profile));
+    const auto fault =
+        check_moves(profile.slicer.start_gcode, machine_volume(profile), gcode_rules(profile));
     EXPECT_FALSE(fault) << id << ": " << fault->command << " " << fault->what;
   }
 }

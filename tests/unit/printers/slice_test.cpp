@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "fixtures/profiles.h"
+#include "gcode/gcode_line.h"
 #include "printers/check_moves.h"
 #include "printers/estimate.h"
-#include "printers/gcode_line.h"
 #include "printers/program.h"
 #include "printers/slicer_settings.h"
 #include "shapes.h"
@@ -145,8 +145,8 @@ TEST(Slice, StandsWhereTheTrayPutsIt) {
   // corner region of the tray: x from 20 to 30 is −92.5 to −82.5 for a central origin
   const SlicedTray sliced = figures(profile, {box(Vec3(20, 30, 0), Vec3(30, 40, 1))});
   Box3 volume(Vec3(-92.5 - 9, -42.5 - 9, 0), Vec3(-82.5 + 9, -32.5 + 9, 1));
-  std::string moves = "G28 Z\n" + sliced.gcode;
-  const auto fault = check_moves(moves, volume);
+  std::string moves = "G92 X-92 Y-42 Z0\n" + sliced.gcode;
+  const auto fault = check_moves(moves, volume, GcodeRules::kMarlin);
   EXPECT_FALSE(fault) << fault->command << " " << fault->what;
 }
 

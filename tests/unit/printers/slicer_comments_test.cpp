@@ -74,11 +74,14 @@ TEST(SlicerComments, NeverThrowsAndNamesStayPrintable) {
 }
 
 TEST(Extruded, AbsoluteAndRelativeAgree) {
-  const Extruded absolute = extruded("G92 E0\nG1 X1 E2\nG1 E1\nG1 E2\nG1 X2 E5\n");
+  const Extruded absolute =
+      extruded("G92 E0\nG1 X1 E2\nG1 E1\nG1 E2\nG1 X2 E5\n", GcodeRules::kMarlin);
   EXPECT_DOUBLE_EQ(absolute.model_mm, 5) << "a retraction and its return do not count";
-  const Extruded relative = extruded("M83\nG92 E0\nG1 X1 E2\nG1 E-1\nG1 E1\nG1 X2 E3\n");
+  const Extruded relative =
+      extruded("M83\nG92 E0\nG1 X1 E2\nG1 E-1\nG1 E1\nG1 X2 E3\n", GcodeRules::kMarlin);
   EXPECT_DOUBLE_EQ(relative.model_mm, 5);
-  EXPECT_DOUBLE_EQ(extruded("M83\n;TYPE:Support material\nG1 X1 E2\n").support_mm, 2);
+  EXPECT_DOUBLE_EQ(
+      extruded("M83\n;TYPE:Support material\nG1 X1 E2\n", GcodeRules::kMarlin).support_mm, 2);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One line of G-code taken apart, for the checks and sums of this folder.
+// One line of G-code taken apart by the rules of the firmware that will execute it.
 #pragma once
 
 #include <array>
@@ -8,10 +8,17 @@
 
 namespace packmerger {
 
+// Whose reading counts; docs/ESTIMATES has the table of differences.
+enum class GcodeRules {
+  kMarlin,  // the printer itself reads it
+  kGpx      // gpx reads it, and writes x3g for a Replicator
+};
+
 class GcodeLine {
  public:
-  // Line numbers, checksums and both kinds of comments are left out; letters may be small.
-  explicit GcodeLine(std::string_view text);
+  // Line numbers, checksums and comments are left out. "(…)" is a comment for gpx alone; letters
+  // may be small for gpx alone. Blanks may stand anywhere but within a number.
+  GcodeLine(std::string_view text, GcodeRules rules);
 
   // The command: letter 'G', 'M' or 'T' with its number ("G92.1": 92 and 1); letter 0 for a line
   // without one.
@@ -25,11 +32,17 @@ class GcodeLine {
   // Whether the word is there, and its value (empty where it stands alone, as in "G28 X").
   bool has(char word) const { return (present_ >> (word - 'A') & 1U) != 0; }
   std::optional<double> value(char word) const;
+  // "2" of "M115 P2", or what stands in for it.
+  double value_or(char word, double otherwise) const { return value(word).value_or(otherwise); }
 
-  // False where something stands behind the command that is no word, as the text of M117.
+  // False where something stands behind the command that is no word, as the text of M117, or that
+  // firmwares read differently.
   bool readable() const { return readable_; }
+  bool is_empty() const { return letter_ == 0 && present_ == 0 && readable_; }
 
  private:
+  void take_words(std::string_view text, GcodeRules rules);
+
   char letter_ = 0;
   int number_ = 0;
   int sub_number_ = 0;

@@ -1,4 +1,4 @@
-#include "printers/gcode_line.h"
+#include "gcode/gcode_line.h"
 
 #include <charconv>
 #include <cmath>
@@ -7,12 +7,15 @@ namespace packmerger {
 namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+bool is_small(char c) { return c >= 'a' && c <= 'z'; }
+char upper(char c) { return is_small(c) ? static_cast<char>(c - 'a' + 'A') : c; }
+
+void skip_spaces(std::string_view& text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+}
 
 void skip_spaces_and_brackets(std::string_view& text) {
-  for (;;) {
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    if (text.empty() || text.front() != '(') return;
+  for (skip_spaces(text); !text.empty() && text.front() == '('; skip_spaces(text)) {
     const std::size_t end = text.find(')');
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
@@ -32,17 +35,27 @@ std::optional<double> take_number(std::string_view& text) {
 
 }  // namespace
 
-GcodeLine::GcodeLine(std::string_view text) {
+GcodeLine::GcodeLine(std::string_view text, GcodeRules rules) {
   text = text.substr(0, text.find(';'));
   text = text.substr(0, text.find('*'));
-  for (skip_spaces_and_brackets(text); !text.empty(); skip_spaces_and_brackets(text)) {
-    const char word = upper(text.front());
+  take_words(text, rules);
+  if (letter_ == 0 && present_ != 0) readable_ = false;
+}
+
+void GcodeLine::take_words(std::string_view text, GcodeRules rules) {
+  const bool gpx = rules == GcodeRules::kGpx;
+  const auto skip = gpx ? skip_spaces_and_brackets : skip_spaces;
+  for (skip(text); !text.empty(); skip(text)) {
+    const char given = text.front();
+    const char word = upper(given);
     if (word < 'A' || word > 'Z') {
       readable_ = false;
       return;
     }
+    // most builds of Marlin pass over small letters, some take them
+    if (is_small(given) && !gpx) readable_ = false;
     text.remove_prefix(1);
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    skip_spaces(text);
     const std::optional<double> number = take_number(text);
     if (letter_ == 0 && word == 'N') continue;
     if (letter_ == 0 && (word == 'G' || word == 'M' || word == 'T') && number && *number >= 0 &&
@@ -58,7 +71,6 @@ GcodeLine::GcodeLine(std::string_view text) {
     valued_ |= bit;
     values_[word - 'A'] = *number;
   }
-  if (letter_ == 0 && present_ != 0) readable_ = false;
 }
 
 std::optional<double> GcodeLine::value(char word) const {
