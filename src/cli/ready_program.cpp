@@ -16,8 +16,8 @@
 #include "printers/check_moves.h"
 #include "printers/estimate.h"
 #include "printers/extruded.h"
-#include "printers/program.h"
 #include "printers/slicer_comments.h"
+#include "printers/x3g.h"
 
 namespace packmerger::cli {
 namespace {
@@ -74,6 +74,26 @@ void judge_moves(ReadyProgram& program, std::string_view gcode) {
                                        fault->command.substr(0, 80), fault->what)});
 }
 
+double seconds_of_x3g(std::string_view x3g) {
+  const std::vector<std::string_view> actions = s3g::split_actions(x3g);
+  return seconds_of(time_marks(actions, std::vector<std::size_t>(actions.size())));
+}
+
+void convert(ReadyProgram& program, const std::string& gcode, const Progress& progress) {
+  if (const std::optional<std::string> missing = missing_in_s3g_start(gcode))
+    throw Error(Fault::kBadInput, "The program lacks " + *missing + ", and could harm the machine",
+                "Let the slicer write the machine's own start text, or give it an .x3g file.");
+  X3g x3g = to_x3g(program.profile, gcode, fs::path(program.file).stem().string(), Fault::kBadInput,
+                   progress);
+  check_x3g(x3g.bytes);
+  program.converted = true;
+  program.bytes = std::move(x3g.bytes);
+  program.warnings.insert(program.warnings.end(), x3g.warnings.begin(), x3g.warnings.end());
+  // gpx limits speeds, and hurries where no feed is given
+  if (program.estimate.source == EstimateSource::kMoves)
+    program.estimate.time_s = seconds_of_x3g(program.bytes);
+}
+
 void take_gcode(ReadyProgram& program, std::string gcode, const Progress& progress) {
   const bool converts = program.profile.dialect == Dialect::kS3g;
   if (!converts) check_gcode(gcode);
@@ -84,20 +104,17 @@ void take_gcode(ReadyProgram& program, std::string gcode, const Progress& progre
   program.made_by = told.made_by;
   take_time(program, told, gcode);
   take_material(program, told, gcode);
-  program.converted = converts;
   program.extension = converts ? "x3g" : "gcode";
-  program.bytes = converts ? converted_to_x3g(program.profile, gcode,
-                                              fs::path(program.file).stem().string(), progress)
-                           : std::move(gcode);
-  if (converts) check_x3g(program.bytes);
+  if (converts)
+    convert(program, gcode, progress);
+  else
+    program.bytes = std::move(gcode);
 }
 
 void take_x3g(ReadyProgram& program, std::string x3g) {
   check_x3g(x3g);
-  const std::vector<std::string_view> actions = s3g::split_actions(x3g);
-  const std::vector<std::size_t> counted(actions.size());
   program.estimate.source = EstimateSource::kMoves;
-  program.estimate.time_s = seconds_of(time_marks(actions, counted));
+  program.estimate.time_s = seconds_of_x3g(x3g);
   program.extension = "x3g";
   program.bytes = std::move(x3g);
 }

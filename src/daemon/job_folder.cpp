@@ -96,7 +96,9 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.seed = report.value("seed", std::int64_t{0});
     const bool is_model = job.variant != kProgramVariant;
     for (const json& warning : report.value("warnings", json::array())) {
-      const bool asks = !is_model || warning.at("code") == "suspicious_size";
+      const json& code = warning.at("code");
+      // what a Replicator has nothing like harms nobody
+      const bool asks = is_model ? code == "suspicious_size" : code != "left_out";
       if (asks && job.warning.empty()) job.warning = warning.at("text").get<std::string>();
     }
     if (const json* estimate = estimate_of(report.at("estimates"), job.variant)) {

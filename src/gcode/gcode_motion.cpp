@@ -121,6 +121,9 @@ void GcodeMotion::follow_m(const GcodeLine& line, GcodeStep& step) {
       return;
     case 132:
       if (!gpx) break;
+      // gpx takes its count of recalled filament for 0
+      for (const char word : {'A', 'B'})
+        if (line.has(word)) e_[filament_of(word)] = 0;
       return forget(line, true);
     case 200: {
       if (gpx) break;
@@ -139,8 +142,8 @@ void GcodeMotion::follow_m(const GcodeLine& line, GcodeStep& step) {
       break;
   }
   step.doubt = cannot_follow(line, rules_);
-  if (!step.doubt && rules_ == GcodeRules::kGpx && line.has('T') && line.number() == 135)
-    follow_t(line, step);
+  const bool changes_tool = line.number() == 6 || line.number() == 108 || line.number() == 135;
+  if (!step.doubt && gpx && line.has('T') && changes_tool) follow_t(line, step);
 }
 
 // The first tool named is the one that is there; another stands elsewhere by an offset that only
@@ -190,8 +193,7 @@ void GcodeMotion::go(const GcodeLine& line, GcodeStep& step) {
 
 // For gpx E stands for the filament of the tool that is chosen.
 std::size_t GcodeMotion::filament_of(char word) const {
-  const bool second =
-      word == 'B' || (word == 'E' && rules_ == GcodeRules::kGpx && tool_.value_or(0) == 1);
+  const bool second = word == 'B' || (word == 'E' && rules_ == GcodeRules::kGpx && tool() == 1);
   return second ? 1 : 0;
 }
 
@@ -202,7 +204,9 @@ void GcodeMotion::push(const GcodeLine& line, GcodeStep& step) {
     const std::optional<double> value = line.value(word);
     if (!value || (word != 'E' && !gpx)) continue;
     double& e = e_[filament_of(word)];
-    step.filament_mm += (*value - (relative ? 0 : e)) * unit_mm_ * mm_per_e_ * flow_;
+    const double pushed_mm = (*value - (relative ? 0 : e)) * unit_mm_ * mm_per_e_;
+    step.by_tool_mm[filament_of(word)] += pushed_mm;
+    step.filament_mm += pushed_mm * flow_;
     e = relative ? e + *value : *value;
   }
 }

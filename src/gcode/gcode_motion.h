@@ -22,13 +22,15 @@ struct GcodeStep {
   std::optional<Arc> arc;       // where both ends are known
   double way_mm = 0;            // of the head; along axes that are known, arcs by their length
   double filament_mm = 0;       // pushed out; negative where it is drawn back
+  std::array<double, 2> by_tool_mm{};  // the same for each tool, before M221
   double time_s = 0;  // of moves at their feed rate and of dwells; acceleration is left out
   // Why it cannot be followed, ready to stand behind "Line 3 of the program, …, ".
   std::optional<std::string> doubt;
 };
 
 // Understands G0 G1 G2 G3 (I J, R and P), G4, G20 G21, G28, G29 and G80, G90 G91, G92, M18 M84,
-// M82 M83, M81, M200, M220, M221, and for gpx G161, G162, M132. Everything else is left to
+// M82 M83, M81, M200, M220, M221, and for gpx G161, G162, M132 and
+// tools. Everything else is left to
 // cannot_follow() (gcode/known_codes.h).
 class GcodeMotion {
  public:
@@ -39,6 +41,8 @@ class GcodeMotion {
   // Whether the machine knows where the axis is (0 to 2): it was homed, recalled or set.
   bool is_placed(int axis) const { return placed_[axis]; }
   double unit_mm() const { return unit_mm_; }
+  // The tool that E stands for; 0 before one was chosen.
+  int tool() const { return tool_.value_or(0); }
 
  private:
   void follow_g(const GcodeLine& line, GcodeStep& step);

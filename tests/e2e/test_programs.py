@@ -132,6 +132,7 @@ class Prepare(unittest.TestCase):
         self.assertTrue(json.loads(result.out)["program"]["converted"])
         x3g = (self.folder / "job/program.x3g").read_bytes()
         self.assertEqual(x3g[-2], 0x9A)
+        self.assertNotIn("left_out", result.out)
         (self.folder / "job").rename(self.folder / "converted")
         result = self.prepare(x3g, "replicator", "--json", name="part.x3g")  # and that is taken as it is
         self.assertEqual(result.code, 0, str(result))
@@ -139,6 +140,17 @@ class Prepare(unittest.TestCase):
         estimate = json.loads(result.out)["estimates"]["as_is"]
         self.assertEqual((estimate["source"], estimate["model_g"], estimate["cost"]), ("moves", None, None))
         self.assertGreater(estimate["time_s"], 10)
+
+    def test_a_replicator_is_sent_whole_programs_or_none(self):
+        result = self.prepare(gcode("M117 Go home X5", start=REPLICATOR_START), "replicator", "--json")
+        self.assertEqual(result.code, 0, str(result))
+        self.assertIn("M117 (1)", json.loads(result.out)["warnings"][-1]["text"])
+        shutil.rmtree(self.folder / "job")
+        for lines, words in ((["M0"], "waits for the user"), (["G29"], "not known"), (["M109 S110", "M83"], "MakerBot")):
+            result = self.prepare(gcode(*lines, start=REPLICATOR_START), "replicator")
+            self.assertEqual(result.code, BAD_INPUT, str(result))
+            self.assertIn(words, result.err)
+            self.assertIn(f"Line {len(REPLICATOR_START) + len(MOVES) + 1} ", result.err)
 
 
 class Daemon(watched.Watched):

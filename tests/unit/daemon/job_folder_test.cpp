@@ -56,6 +56,20 @@ TEST(JobFolder, OnlyAWarningOfItsSizeIsADoubtAboutAModel) {
             "it measures 2 mm");
 }
 
+TEST(JobFolder, EveryDoubtAboutAProgramButWhatWasLeftOut) {
+  const TemporaryFolder folder;
+  const auto doubt = [&](const std::string& code) {
+    const std::string warning = R"({"code": ")" + code + R"(", "text": "line 3"})";
+    write(folder.path() / "job.json",
+          R"({"version": 1, "variant": "program", "inputs": [{"file": "a", "sha256": "x"}],
+              "parts": [], "estimates": {}, "warnings": [)" +
+              warning + "]}");
+    return doubt_about(read_prepared(folder.path()));
+  };
+  EXPECT_EQ(doubt("moves_not_judged"), "line 3");
+  EXPECT_EQ(doubt("left_out"), "");
+}
+
 TEST(JobFolder, RefusesWhatIsNoReport) {
   const TemporaryFolder folder;
   EXPECT_EQ(fault_of([&] { read_prepared(folder.path()); }), Fault::kNoInput);

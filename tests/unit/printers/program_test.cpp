@@ -9,6 +9,7 @@
 #include "base/process.h"
 #include "fixtures/profiles.h"
 #include "printers/slice.h"
+#include "printers/x3g.h"
 #include "shapes.h"
 
 namespace packmerger {
@@ -107,6 +108,52 @@ TEST(Program, StartTextsThatCouldHarmAReplicatorAreRefused) {
   EXPECT_EQ(error_of(empty, small_cube()).fault(), Fault::kBadProfile);
   // before anything is sliced: the tray here could not be
   EXPECT_EQ(error_of(empty, Tray()).fault(), Fault::kBadProfile);
+}
+
+TEST(Program, WhatGpxWouldPassOverIsRefusedWithItsLine) {
+  for (const char* line : {"M0", "G10 P1 X5", "M104 S300 T0"}) {
+    Profile profile = fixtures::shipped_profile("replicator");
+    profile.slicer.start_gcode += std::string(line) + "\n";
+    const Error error = error_of(profile, small_cube());
+    EXPECT_EQ(error.fault(), Fault::kBadProfile);
+    EXPECT_NE(std::string(error.what()).find(line), std::string::npos) << error.what();
+  }
+}
+
+// What gpx only warns of: a tool the machine does not have.
+TEST(Program, NothingThatGpxWarnsOfIsSent) {
+  Profile profile = fixtures::shipped_profile("replicator");
+  profile.slicer.gpx_machine = "r1";
+  const std::string text =
+      "G162 X Y F2500\nG161 Z F1100\nM132 X Y Z A B\nM104 S200 T1\nM133 T0\nM137\n";
+  try {
+    to_x3g(profile, text, "x", Fault::kBadInput, Progress());
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kBadInput);
+    EXPECT_EQ(std::string(error.what()).find("Line 4 of the program, \"M104 S200 T1\": gpx"), 0U)
+        << error.what();
+  }
+}
+
+// As gpx's own reader tells it.
+TEST(Program, ArcsInchesAndMakerBotsHeatComeThrough) {
+  const Profile profile = fixtures::shipped_profile("replicator");
+  const std::string start = "M136\nG162 X Y F2500\nG161 Z F1100\nM132 X Y Z A B\n";
+  const auto dumped = [&](const std::string& text) {
+    return dump(to_x3g(profile, start + text, "x", Fault::kBadInput, Progress()).bytes);
+  };
+  const std::string plate = dumped("M109 S110 T0\nM134 T0\nM135 T0\nM104 S230 T0\nM133 T0\nM137\n");
+  EXPECT_EQ(count(plate, "Set build platform temperature to 110 C"), 1) << plate;
+  EXPECT_EQ(count(plate, "Set target temperature to 230 C"), 1);
+  EXPECT_EQ(count(plate, "Set target temperature to 110 C"), 0);
+  const std::string nozzle = dumped("M109 S230 T0\nM137\n");
+  EXPECT_EQ(count(nozzle, "Set target temperature to 230 C"), 1);
+  const std::string arc = dumped("G1 X0 Y0 Z1 F600\nG92 E0\nG1 X20\nG2 X20 I-10 E5\nM137\n");
+  EXPECT_GT(count(arc, "Move to"), 50);
+  EXPECT_EQ(count(arc, "Define position"), 0);
+  const std::string inches = dumped("G1 X0 Y0 Z1 F600\nG20\nG1 X1\nM137\n");
+  EXPECT_EQ(count(inches, "distance 25.400000 mm"), 1) << inches;
 }
 
 TEST(Program, AMoveOutsideIsRefusedWithItsLine) {
