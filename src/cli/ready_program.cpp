@@ -12,6 +12,7 @@
 #include "firmware_io/remaining_time.h"
 #include "firmware_io/s3g.h"
 #include "firmware_io/s3g_link.h"
+#include "gcode/program_text.h"
 #include "job/comparison_table.h"
 #include "printers/check_moves.h"
 #include "printers/estimate.h"
@@ -132,7 +133,7 @@ ReadyProgram read_ready_program(const Profile& profile, const fs::path& file,
   std::string bytes = read_file(file, kMostBytes);
   program.sha256 = sha256_hex(bytes);
   kind == FileKind::kX3g ? take_x3g(program, std::move(bytes))
-                         : take_gcode(program, std::move(bytes), progress);
+                         : take_gcode(program, program_text(std::move(bytes)), progress);
   program.estimate.time_s += profile.fdm.start_s;
   price(program.estimate, profile, Assembly{});
   progress.report("checking", 1);

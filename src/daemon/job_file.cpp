@@ -10,11 +10,12 @@
 namespace packmerger {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, FileKind>, 10> kEndings = {{
+constexpr std::array<std::pair<std::string_view, FileKind>, 11> kEndings = {{
     {".stl", FileKind::kModel},
     {".obj", FileKind::kModel},
     {".ply", FileKind::kModel},
     {".off", FileKind::kModel},
+    {".gcode.3mf", FileKind::kSliced},  // before what it ends in
     {".3mf", FileKind::kModel},
     {".gcode", FileKind::kGcode},
     {".gco", FileKind::kGcode},
@@ -27,13 +28,13 @@ constexpr std::size_t kLongestName = 200;
 }  // namespace
 
 FileKind kind_of_file(std::string_view name) {
-  const std::size_t dot = name.rfind('.');
-  if (dot == std::string_view::npos) return FileKind::kUnknown;
-  const std::string_view given = name.substr(dot);
   const auto same_letter = [](unsigned char a, unsigned char b) { return std::tolower(a) == b; };
-  for (const auto& [ending, kind] : kEndings)
+  for (const auto& [ending, kind] : kEndings) {
+    if (name.size() < ending.size()) continue;
+    const std::string_view given = name.substr(name.size() - ending.size());
     if (std::equal(given.begin(), given.end(), ending.begin(), ending.end(), same_letter))
       return kind;
+  }
   return FileKind::kUnknown;
 }
 

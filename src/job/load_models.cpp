@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <fstream>
 #include <map>
 
 #include "base/files.h"
+#include "base/zip_archive.h"
+#include "gcode/program_text.h"
 #include "shape/read_model.h"
 #include "shape/repair.h"
 
@@ -13,6 +17,7 @@ namespace {
 
 constexpr double kSmallest = 5;    // mm; models drawn in units of one are often two of them long
 constexpr double kLargest = 2000;  // mm
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // what read_model takes
 
 double factor(const ModelFile& file, const Sizing& sizing) {
   if (sizing.size_mm) {
@@ -34,9 +39,21 @@ void warn_of_size(const std::string& name, const Mesh& surface, Warnings& warnin
                    name, size.x(), size.y(), size.z())});
 }
 
+// A sliced file's model may be there too, or not: what its maker sees is the program.
+void refuse_sliced(const std::filesystem::path& path) {
+  std::array<char, 4> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  if (!ZipArchive::looks_like({start.data(), start.size()})) return;
+  if (sliced_plates(read_file(path, kMostBytes)).empty()) return;
+  throw Error(Fault::kBadInput,
+              path.filename().string() + " holds a sliced program beside or instead of a model",
+              "Name it .gcode.3mf to have the program printed as it is, or export the model.");
+}
+
 LoadedModel load_model(const std::filesystem::path& path, const Sizing& sizing, Warnings& warnings,
                        const Progress& progress) {
   progress.report("reading", 0);
+  refuse_sliced(path);
   ModelFile file = read_model(path, progress);
   LoadedModel loaded;
   loaded.input.file = path.filename().string();

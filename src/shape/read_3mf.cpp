@@ -3,24 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 
-#include <zip.h>
 #include <pugixml.hpp>
 
 #include "base/error.h"
+#include "base/zip_archive.h"
 #include "shape/formats.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::uint64_t kMaxInflated = std::uint64_t{512} << 20;
-constexpr std::uint64_t kMaxRatio = 200;  // meshes as XML shrink to a tenth, bombs to a thousandth
-constexpr double kMaxTreeBytes = 2e9;     // of the XML as a tree in memory
-constexpr double kNodeBytes = 72;         // of a node in pugixml's tree, with its share of a page
+constexpr double kMaxTreeBytes = 2e9;  // of the XML as a tree in memory
+constexpr double kNodeBytes = 72;      // of a node in pugixml's tree, with its share of a page
 constexpr double kAttributeBytes = 40;
 constexpr int kMaxDepth = 64;
 constexpr int kMaxVisits = 1'000'000;  // components may double at every level
@@ -32,47 +30,6 @@ constexpr std::string_view kModelRelationship =
 constexpr std::array<std::string_view, 2> kHarmlessExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"};
-
-class Archive {
- public:
-  explicit Archive(std::string_view bytes)
-      : limit_(std::min(kMaxInflated, kMaxRatio * bytes.size() + (1 << 20))) {
-    zip_error_t error;
-    zip_error_init(&error);
-    zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
-    if (source != nullptr) {
-      zip_.reset(zip_open_from_source(source, ZIP_RDONLY, &error));
-      if (!zip_) zip_source_free(source);
-    }
-    const std::string why = zip_error_strerror(&error);
-    zip_error_fini(&error);
-    if (!zip_) refuse_file("its ZIP archive cannot be opened (" + why + ")");
-  }
-
-  std::optional<std::string> entry(const std::string& name) const {
-    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
-        zip_fopen(zip_.get(), name.c_str(), ZIP_FL_NOCASE), zip_fclose);
-    if (!file) return std::nullopt;
-    std::string content;
-    std::array<char, 1 << 16> block;
-    for (;;) {
-      const zip_int64_t count = zip_fread(file.get(), block.data(), block.size());
-      if (count < 0) refuse_file("an entry of its ZIP archive is broken");
-      if (count == 0) return content;
-      content.append(block.data(), static_cast<std::size_t>(count));
-      if (content.size() > limit_)
-        throw Error(Fault::kBadInput, "The 3MF file unpacks to an implausible size",
-                    "Reduce the model, or export it as binary STL.");
-    }
-  }
-
- private:
-  struct Discard {
-    void operator()(zip_t* zip) const { zip_discard(zip); }
-  };
-  std::uint64_t limit_;
-  std::unique_ptr<zip_t, Discard> zip_;
-};
 
 std::string_view local(const char* name) {
   const std::string_view whole = name;
@@ -105,7 +62,7 @@ pugi::xml_document parsed(std::string& text) {
 }
 
 // The name of the root model part.
-std::string model_part(const Archive& archive) {
+std::string model_part(const ZipArchive& archive) {
   if (auto text = archive.entry("_rels/.rels")) {
     const pugi::xml_document document = parsed(*text);
     for (const pugi::xml_node& relationship : child(document, "Relationships").children())
@@ -265,7 +222,7 @@ void refuse_required_extensions(const pugi::xml_node& model) {
 }  // namespace
 
 TriangleSoup read_3mf(std::string_view bytes, const Progress& progress) {
-  const Archive archive(bytes);
+  const ZipArchive archive(bytes, kMaxInflated);
   auto text = archive.entry(model_part(archive));
   if (!text) refuse_file("its ZIP archive holds no 3D model part");
   progress.check();

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Programs that another slicer made: checked, estimated, streamed byte for byte, or refused in words."""
+import gzip
 import hashlib
 import json
 import pathlib
@@ -8,6 +9,7 @@ import sys
 import tempfile
 import time
 import unittest
+import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
@@ -80,6 +82,44 @@ class Prepare(unittest.TestCase):
             self.assertFalse((self.folder / "job").exists())
         for nothing in (b"", b"; only a comment\n"):
             self.assertEqual(self.prepare(nothing, "marlin").code, BAD_INPUT)
+
+    def test_a_sliced_3mf_is_the_program_of_its_plate(self):
+        def sliced(*plates):
+            with zipfile.ZipFile(self.folder / "made.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
+                archive.writestr("3D/3dmodel.model", "<model/>")
+                for plate in plates:
+                    archive.writestr(f"Metadata/plate_{plate}.gcode", gcode())
+            return (self.folder / "made.3mf").read_bytes()
+
+        result = self.prepare(sliced(1), "marlin", "--json", name="plate.gcode.3mf")
+        self.assertEqual(result.code, 0, str(result))
+        self.assertEqual((self.folder / "job/program.gcode").read_bytes(), gcode())
+        self.assertEqual(json.loads(result.out)["inputs"],
+                         [{"file": "plate.gcode.3mf", "sha256": hashlib.sha256(sliced(1)).hexdigest()}])
+        shutil.rmtree(self.folder / "job")
+        for data, name, words in ((sliced(1, 2), "a.gcode.3mf", "2 plates"), (sliced(), "a.gcode.3mf", "without a sliced plate"),
+                                  (sliced(1), "a.3mf", "sliced program")):
+            result = self.prepare(data, "marlin", name=name)
+            self.assertNotEqual(result.code, 0, str(result))
+            self.assertIn(words, result.err)
+            self.assertIn("hint: ", result.err)
+
+    def test_a_byte_order_mark_and_other_line_ends_are_taken(self):
+        for data in (b"\xef\xbb\xbf" + gcode(), gcode().replace(b"\n", b"\r")):
+            result = self.prepare(data, "marlin")
+            self.assertEqual(result.code, 0, str(result))
+            self.assertEqual((self.folder / "job/program.gcode").read_bytes(), gcode())
+            shutil.rmtree(self.folder / "job")
+
+    def test_what_is_no_gcode_is_named(self):
+        for data, words in ((b"GCDE\1\0\0\0", "binary G-code"), (gzip.compress(gcode()), "gzip"),
+                            (gcode().decode().encode("utf-16"), "UTF-16"), (b"PK\3\4 and no more", "ZIP archive cannot be opened"),
+                            (b"<!DOCTYPE html>", "web page"), (b"\x88\0\3\2" * 50, "binary data")):
+            for profile in ("marlin", "replicator"):
+                result = self.prepare(data, profile)
+                self.assertEqual(result.code, BAD_INPUT, str(result))
+                self.assertIn(words, result.err)
+                self.assertNotIn("accented", result.err)
 
     def test_printers_refuse_what_they_cannot_execute(self):
         for profile, name, words in (("objet30", "a.gcode", "takes no program"), ("uprint", "a.x3g", "takes no program"),
@@ -187,6 +227,14 @@ class Daemon(watched.Watched):
         self.ends(2, "done")
         self.assertEqual(self.job(2)["same_as"], 1)
         self.assertIn("the same as job 1", self.ask("jobs", "show", 2).out)
+
+    def test_a_dropped_sliced_3mf_is_printed_as_its_program(self):
+        with zipfile.ZipFile(self.drops / "m/.part", "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("Metadata/plate_1.gcode", gcode())
+        (self.drops / "m/.part").rename(self.drops / "m/plate.gcode.3mf")
+        self.ends(1, "done")
+        self.assertEqual((pathlib.Path(self.job(1)["folder"]) / "program.gcode").read_bytes(), gcode())
+        self.assertEqual(self.job(1)["kind"], "program")
 
     def test_a_program_that_still_grows_is_not_taken(self):
         data = gcode()

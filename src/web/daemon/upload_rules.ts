@@ -15,7 +15,7 @@ export function forbids(file: { name: string; size: number }, rules: UploadRules
   return null;
 }
 
-const SHORT_FORMS = ['.gco', '.g', '.s3g'];  // of what is named already
+const SHORT_FORMS = ['.gco', '.g', '.s3g', '.gcode.3mf'];  // of what is named already
 const NAMES: Record<string, string> = { '.gcode': 'G-code', '.x3g': 'x3g' };
 
 export function endingsInWords(rules: UploadRules | null): string {

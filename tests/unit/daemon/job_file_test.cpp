@@ -19,6 +19,9 @@ TEST(JobFile, KindsByTheirEndings) {
   for (const char* name : {"a.x3g", "a.S3G"}) EXPECT_EQ(kind_of_file(name), FileKind::kX3g) << name;
   for (const char* name : {"", "a", "stl", "a.stl.exe", "a.gcode ", "a.toml", "a.bgcode"})
     EXPECT_EQ(kind_of_file(name), FileKind::kUnknown) << name;
+  for (const char* name : {"plate.gcode.3mf", "P.GCODE.3MF"})
+    EXPECT_EQ(kind_of_file(name), FileKind::kSliced) << name;
+  EXPECT_TRUE(is_program("plate.gcode.3mf"));
   EXPECT_TRUE(is_program("a.g"));
   EXPECT_FALSE(is_program("a.stl"));
 }
