@@ -223,7 +223,7 @@ class Writer {
       case 109:
         return heat(line, source_.makerbot_flavour ? kHottestPlate : kHottestNozzle);
       case 108:
-        if (line.has('R')) refuse("turns the extruder by itself");
+        if (line.has('R')) return pass(line);
         return line.has('T') ? put(fmt::format("M135 T{:.0f}", line.value_or('T', 0)))
                              : leave_out(line);
       case 132:

@@ -37,6 +37,9 @@ std::optional<double> take_number(std::string_view& text) {
 
 GcodeLine::GcodeLine(std::string_view text, GcodeRules rules) {
   text = text.substr(0, text.find(';'));
+  std::string_view outside = text;
+  skip_spaces_and_brackets(outside);
+  if (outside.empty()) return;  // a comment for all: Marlin knows no command that begins so
   text = text.substr(0, text.find('*'));
   take_words(text, rules);
   if (letter_ == 0 && present_ != 0) readable_ = false;

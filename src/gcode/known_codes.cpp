@@ -43,10 +43,10 @@ constexpr int kOtherM[] = {23,  24,  25,  26,  28,  32,  98,  112, 410, 524, 808
 
 // gpx: motor potentiometers; no plane but XY, no retraction by the firmware, no coordinate systems.
 constexpr int kStillGpxG[] = {4, 17, 21, 71, 130};
-constexpr int kStillGpxM[] = {6,   17,  70,  71,  72,  73,  103, 104, 105, 106, 107,
-                              108, 109, 110, 111, 113, 114, 115, 116, 117, 118, 126,
-                              127, 133, 134, 135, 136, 137, 140, 155, 190, 201, 203,
-                              204, 205, 300, 320, 321, 322, 400, 420, 486, 862, 900};
+constexpr int kStillGpxM[] = {6,   17,  31,  70,  71,  72,  73,  75,  76,  77,  78,  101, 102,
+                              103, 104, 105, 106, 107, 108, 109, 110, 111, 113, 114, 115, 116,
+                              117, 118, 126, 127, 133, 134, 135, 136, 137, 140, 155, 190, 201,
+                              203, 204, 205, 300, 320, 321, 400, 420, 486, 862, 900};
 
 bool holds(std::span<const int> codes, int number) {
   return std::binary_search(codes.begin(), codes.end(), number);
@@ -79,6 +79,9 @@ std::optional<std::string> cannot_follow(const GcodeLine& line, GcodeRules rules
   const bool still = line.sub_number() == 0 || line.number() == 862
                          ? (g ? holds(kStillGpxG, line.number()) : holds(kStillGpxM, line.number()))
                          : false;
+  // gpx then pushes filament out by time, whatever moves
+  if (!g && line.number() == 108 && line.value_or('R', 0) > 0)
+    return "cannot be judged: it turns the extruder by itself";
   if (still) return std::nullopt;
   return "cannot be judged: this command is not known to a Replicator";
 }

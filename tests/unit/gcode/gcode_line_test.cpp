@@ -37,6 +37,8 @@ TEST(GcodeLine, WordsAloneSubCodesAndText) {
 TEST(GcodeLine, WhatFirmwaresReadDifferentlyIsUnreadable) {
   EXPECT_TRUE(gpx("G1 X5 (Y9)").readable());
   EXPECT_FALSE(marlin("G1 X5 (Y9)").readable());
+  EXPECT_TRUE(marlin("(**** start ****) ; G1").is_empty());
+  EXPECT_FALSE(marlin("(a) G1 X5").readable());
   EXPECT_TRUE(gpx("g1 x5").readable());
   EXPECT_FALSE(marlin("g1 x5").readable());
 }

@@ -68,9 +68,11 @@ TEST(KnownCodes, OfEverySlicerAreFollowed) {
 }
 
 TEST(KnownCodes, OfAReplicatorAreItsOwn) {
-  for (const char* text : {"G130 X20", "M132 X Y Z A B", "M133 T0", "M136", "M72 P1", "M116"})
+  for (const char* text :
+       {"G130 X20", "M132 X Y Z A B", "M133 T0", "M136", "M72 P1", "M116", "M101", "M108 R0"})
     EXPECT_TRUE(followed(text, GcodeRules::kGpx)) << text;
-  for (const char* text : {"G10 P1 X5", "G54", "G29", "M131 X", "M101", "M999", "G92.1", "M206 X1"})
+  for (const char* text :
+       {"G10 P1 X5", "G54", "G29", "M131 X", "M322 Z5", "M108 R5", "M999", "G92.1", "M206 X1"})
     EXPECT_FALSE(followed(text, GcodeRules::kGpx)) << text;
   EXPECT_FALSE(followed("M132 X Y Z A B"));
 }

@@ -84,11 +84,12 @@ TEST(GpxSource, TellsWhereTheMachineIsForAllAxesOrNone) {
 
 TEST(GpxSource, RefusesByLineWhatWouldBeLostOrChanged) {
   for (const char* line :
-       {"G2 X5 Y5", "G3 X5 Y5 R1", "G5 X1",    "G18",       "G29",      "G10 P1 X5",     "G11",
-        "G54",      "G70",         "G92.1",    "M0",        "M1",       "M2\nM104 S0",   "M101",
-        "M108 R3",  "M109 R200",   "M190 R60", "M104 S300", "M104 S-1", "M140 S131",     "M131 X",
-        "M141 S50", "M206 X5",     "M600",     "M500",      "M999",     "X5 Y5",         "G1 X5 #",
-        "G161",     "D3",          "M106.5",   ";@pause 5", "; x",      "(@machine r2)", "hello"}) {
+       {"G2 X5 Y5",    "G3 X5 Y5 R1", "G5 X1",         "G18",      "G29",       "G10 P1 X5",
+        "G11",         "G54",         "G70",           "G92.1",    "M0",        "M1",
+        "M2\nM104 S0", "M322 Z5",     "M109 R200",     "M190 R60", "M104 S300", "M104 S-1",
+        "M140 S131",   "M131 X",      "M141 S50",      "M206 X5",  "M600",      "M500",
+        "M999",        "X5 Y5",       "G1 X5 #",       "G161",     "D3",        "M106.5",
+        ";@pause 5",   "; x",         "(@machine r2)", "hello"}) {
     if (std::string_view(line) == "; x") {
       EXPECT_NO_THROW(source(kStart + line));
       continue;
@@ -109,6 +110,13 @@ TEST(GpxSource, TellsWhatItLeavesOut) {
   EXPECT_EQ(made.warnings[0].code, "left_out");
   EXPECT_NE(made.warnings[0].text.find("M117 (2), M204 (1), M400 (1), M84 (1)"), std::string::npos)
       << made.warnings[0].text;
+}
+
+// gpx knows extruders that turn by speed and time, as ReplicatorG's programs prime the nozzle.
+TEST(GpxSource, PassesOnWhatTurnsTheExtruder) {
+  EXPECT_EQ(last(kStart + "M108 R5"), "M108 R5.00000");
+  EXPECT_EQ(last(kStart + "M101"), "M101");
+  EXPECT_EQ(last(kStart + "M108 T1"), "M135 T1");
 }
 
 TEST(GpxFlavour, IsToldByWhatOnlyOneHas) {
