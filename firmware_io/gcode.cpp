@@ -84,12 +84,23 @@ bool is_heating(std::string_view command) {
 }
 
 bool is_long(std::string_view command) {
-  static constexpr std::array<std::string_view, 12> kWords = {
-      "G4", "G28", "G29", "G30", "G32", "M0", "M1", "M400", "M226", "M600", "M109", "M190"};
+  static constexpr std::array<std::string_view, 13> kWords = {
+      "G4", "G28", "G29", "G30", "G32", "M0", "M1", "M400", "M226", "M600", "M601", "M109", "M190"};
   return one_of(gcode_word(command), kWords);
 }
 
 bool blocks(std::string_view command) { return is_heating(command) || is_long(command); }
+
+Omission omission_of(std::string_view word) {
+  static constexpr std::array<std::string_view, 5> kOfPerson = {"M0", "M1", "M226", "M600", "M601"};
+  static constexpr std::array<std::string_view, 18> kOfPrint = {
+      "G0",  "G1",  "G2",  "G3",   "G5",   "G20",  "G28",  "G90",  "G91",
+      "G92", "M82", "M83", "M104", "M109", "M140", "M190", "M141", "M191"};
+  if (one_of(word, kOfPerson)) return Omission::kOfPerson;
+  // A printer with one tool may know no tools at all.
+  const bool other_tool = word.starts_with('T') && word != "T0";
+  return other_tool || one_of(word, kOfPrint) ? Omission::kOfPrint : Omission::kMinor;
+}
 
 std::vector<std::string> gcode_modes(const std::vector<std::string>& commands, std::size_t count) {
   std::size_t positions = count;  // the last G90 or G91

@@ -34,6 +34,14 @@ bool is_long(std::string_view command);     // may block long: homing, dwelling,
 bool blocks(std::string_view command);      // either of them
 bool waits_for_user(std::string_view command);  // M0 or M1 without a time
 
+// What a printer that does not know a command of this word leaves out of a print.
+enum class Omission {
+  kMinor,     // the object comes out as it should, or nearly
+  kOfPerson,  // somebody was to do something: change the filament, press a button
+  kOfPrint    // a move, a heater, a unit or a tool: what is printed is wrong from there on
+};
+Omission omission_of(std::string_view word);
+
 // Commands that set again what the first `count` of `commands` have set last: absolute or relative
 // positions (G90, G91) and extrusion (M82, M83), in their order, and the feed rate.
 std::vector<std::string> gcode_modes(const std::vector<std::string>& commands, std::size_t count);
@@ -44,8 +52,10 @@ enum class GcodeReplyKind {
   kBusy,          // alive; `waiting` where the printer waits for its user
   kIdle,          // "wait": alive and nothing queued
   kStart,         // booted: whatever was printing is lost
-  kHalted,        // dead until it is reset
-  kThermal,       // a heater failed; the printer may still listen
+  kStopped,       // its words say that it has stopped, for good or until it is started again
+  kRefused,       // Klipper's "!!": it does not do what it was told, and an ok may follow
+  kError,         // an error line; what follows tells whether it is harmless
+  kUnknown,       // text: the word of a command that it does not know
   kTemperature,   // a report that is no ok
   kPosition,      // "X:… Y:… Z:…", what M114 answers
   kPrompt,        // text: the question
@@ -64,6 +74,7 @@ struct GcodeReply {
   std::string text;  // the whole line unless said otherwise above
   std::size_t number = 0;
   bool waiting = false;
+  bool heater_failed = false;         // of kStopped
   bool has_temperature = false;       // of kOk: the answer to M105
   std::vector<HeaterReport> heaters;  // of kTemperature, and of kOk with temperatures
   bool has_position = false;          // of kOk: M114 answered on one line

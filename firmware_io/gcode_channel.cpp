@@ -16,11 +16,6 @@ constexpr std::size_t kMaxReply = 4096;
 // After this much silence a printer has said what it had to say.
 constexpr double kQuiet_s = 0.05;
 
-[[noreturn]] void throw_halted(const GcodeReply& reply) {
-  throw Error(Fault::kIo, "The printer has halted: " + reply.text,
-              "Find out why, switch the printer off and on, then print the job again.");
-}
-
 // Boards that reset when the port is opened are silent for a while and then print "start" and their
 // settings; the others say nothing at all.
 void wait_for_boot(GcodeChannel& channel, double boot_wait_s, const PrintControl& control) {
@@ -62,9 +57,9 @@ void note(const GcodeReply& reply, Answer& answer) {
     case GcodeReplyKind::kCard:
       answer.prints_from_card = answer.prints_from_card || reply.waiting;
       break;
-    case GcodeReplyKind::kHalted:
-    case GcodeReplyKind::kThermal:
-      throw_halted(reply);
+    case GcodeReplyKind::kStopped:
+    case GcodeReplyKind::kRefused:
+      throw_told_failure(reply);
     default:
       break;
   }
@@ -150,6 +145,18 @@ void reset_line_count(GcodeChannel& channel, const StreamOptions& options,
 }
 
 }  // namespace
+
+void throw_told_failure(const GcodeReply& reply) {
+  if (reply.heater_failed)
+    throw Error(Fault::kIo, "A heater of the printer failed: " + reply.text,
+                "Switch the printer off, check its heater and temperature sensor, then print the "
+                "job again.");
+  if (reply.kind == GcodeReplyKind::kRefused)
+    throw Error(Fault::kIo, "The printer refuses to go on: " + reply.text,
+                "Put right what it complains of, then print the job again.");
+  throw Error(Fault::kIo, "The printer has stopped: " + reply.text,
+              "Find out why, switch the printer off and on, then print the job again.");
+}
 
 void GcodeChannel::send(std::string_view line) {
   std::string bytes(line);

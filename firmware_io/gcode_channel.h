@@ -43,4 +43,7 @@ struct GcodeAbilities {
 GcodeAbilities connect_gcode(GcodeChannel& channel, const StreamOptions& options,
                              const PrintControl& control);
 
+// The end of a print, in the printer's own words. Throws Error{kIo}.
+[[noreturn]] void throw_told_failure(const GcodeReply& reply);
+
 }  // namespace packmerger

@@ -28,7 +28,8 @@ void refuse_unanswerable_pauses(const std::vector<GcodeCommand>& commands,
 constexpr const char* kReportNothing = "M155 S0";
 
 // Behind a print, and after a failure the line count is unknown, so these go without numbers; no
-// answer is insisted on.
+// answer is insisted on. A printer that says it has stopped may still obey; one that is dead is
+// not harmed.
 void send_text(GcodeChannel& channel, const std::string& text) {
   constexpr double kPatience_s = 1;
   try {
@@ -38,7 +39,7 @@ void send_text(GcodeChannel& channel, const std::string& text) {
       while (channel.now_s() < end) {
         const auto reply = channel.receive(end - channel.now_s());
         if (!reply || reply->kind == GcodeReplyKind::kOk) break;
-        if (reply->kind == GcodeReplyKind::kHalted || reply->kind == GcodeReplyKind::kStart) return;
+        if (reply->kind == GcodeReplyKind::kStart) return;
       }
     }
   } catch (const Error&) {

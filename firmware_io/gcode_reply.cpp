@@ -35,18 +35,64 @@ std::size_t first_number(std::string_view text) {
   return number;
 }
 
-// What Marlin prints when it stops for good, and OctoPrint's list of errors that mean it will.
-bool tells_halt(std::string_view line) {
-  return has(line, "halted") || has(line, "kill() called") || has(line, "KILL caused") ||
-         has(line, "Watchdog barked");
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
 }
 
-bool tells_heater_failure(std::string_view line) {
-  static constexpr std::array<std::string_view, 6> kTexts = {
-      "Heating failed",    "Thermal Runaway",   "Thermal Malfunction",
-      "MAXTEMP triggered", "MINTEMP triggered", "Invalid extruder number"};
-  return std::any_of(kTexts.begin(), kTexts.end(),
+template <std::size_t N>
+bool has_any(const std::string& line, const std::array<std::string_view, N>& texts) {
+  return std::any_of(texts.begin(), texts.end(),
                      [&](std::string_view text) { return has(line, text); });
+}
+
+// In an error line, in small letters: the firmwares' own words for having stopped. M999 starts a
+// stopped Marlin or Repetier again.
+bool tells_stop(const std::string& line) {
+  static constexpr std::array<std::string_view, 8> kTexts = {
+      "halted",      "stopped",         "stop called", "kill() called",
+      "kill caused", "watchdog barked", "m999",        "shutdown"};
+  return has_any(line, kTexts);
+}
+
+bool tells_heater_failure(const std::string& line) {
+  static constexpr std::array<std::string_view, 7> kTexts = {
+      "heating failed",    "thermal runaway",   "thermal malfunction",    "heater/sensor error",
+      "maxtemp triggered", "mintemp triggered", "invalid extruder number"};
+  return has_any(line, kTexts);
+}
+
+// What a stopped printer says without the mark of an error, to every move that it refuses.
+bool tells_stop_plainly(std::string_view line) {
+  return line.starts_with("Printer stopped due to errors") ||
+         line.starts_with("echo:Printer stopped due to errors");
+}
+
+// Lines that say that something is wrong; false for others.
+bool read_error(std::string_view line, GcodeReply& reply) {
+  const bool refused = line.starts_with("!!");
+  const bool fatal = starts_with_any_case(line, "fatal:") || tells_stop_plainly(line);
+  if (!refused && !fatal && !starts_with_any_case(line, "error")) return false;
+  const std::string words = lower(line);
+  reply.heater_failed = tells_heater_failure(words);
+  reply.kind = fatal || reply.heater_failed || tells_stop(words) ? GcodeReplyKind::kStopped
+               : refused                                         ? GcodeReplyKind::kRefused
+                                                                 : GcodeReplyKind::kError;
+  return true;
+}
+
+// `// Unknown command:"M600"`, `echo:Unknown command: "M600 U5"`.
+bool read_unknown(std::string_view line, GcodeReply& reply) {
+  constexpr std::string_view kUnknown = "unknown command:";
+  if (line.starts_with("//")) line = trim(line.substr(2));
+  if (line.starts_with("echo:")) line = trim(line.substr(5));
+  if (!starts_with_any_case(line, kUnknown)) return false;
+  std::string_view command = trim(line.substr(kUnknown.size()));
+  if (command.starts_with('"')) command.remove_prefix(1);
+  reply.kind = GcodeReplyKind::kUnknown;
+  reply.text = gcode_word(command);
+  return true;
 }
 
 // The cause of a reset, which Marlin prints right after "start".
@@ -135,6 +181,7 @@ void read_action(std::string_view action, GcodeReply& reply) {
 
 // Lines that begin with a word of their own; false where none does.
 bool read_by_prefix(std::string_view line, GcodeReply& reply) {
+  constexpr std::string_view kAction = "action:";  // some firmwares write a blank before it
   if (starts_with_any_case(line, "resend") || starts_with_any_case(line, "rs ")) {
     reply.kind = GcodeReplyKind::kResend;
     reply.number = first_number(line);
@@ -143,8 +190,8 @@ bool read_by_prefix(std::string_view line, GcodeReply& reply) {
     reply.waiting = has(line, "paused for");
   } else if (line == "wait") {
     reply.kind = GcodeReplyKind::kIdle;
-  } else if (line.starts_with("//action:")) {
-    read_action(line.substr(9), reply);
+  } else if (line.starts_with("//") && trim(line.substr(2)).starts_with(kAction)) {
+    read_action(trim(line.substr(2)).substr(kAction.size()), reply);
   } else if (line.starts_with("Cap:")) {
     reply.kind = GcodeReplyKind::kCapability;
     reply.text = line.substr(4);
@@ -167,11 +214,8 @@ GcodeReply read_gcode_reply(std::string_view line) {
   reply.text = text;
   if (is_ok(text)) {
     read_ok(text, reply);
-  } else if (starts_with_any_case(text, "error") || text.starts_with("!!")) {
-    if (tells_heater_failure(text))
-      reply.kind = GcodeReplyKind::kThermal;
-    else if (tells_halt(text) || text.starts_with("!!"))
-      reply.kind = GcodeReplyKind::kHalted;
+  } else if (read_error(text, reply) || read_unknown(text, reply)) {
+    return reply;
   } else if (tells_reset(text)) {
     reply.kind = GcodeReplyKind::kStart;
   } else if (is_temperature(text)) {

@@ -88,7 +88,7 @@ void GcodeStream::handle_action(const GcodeReply& reply) {
 // No line of the program is given until the pause ends. Returns the number of the next one.
 std::size_t GcodeStream::pause(std::size_t number) {
   between_ = true;
-  reporter_.state(PrintState::kPaused, parks_ ? "" : "at the printer");
+  reporter_.state(PrintState::kPaused, parks_ ? std::exchange(pause_text_, {}) : "at the printer");
   const bool parked = std::exchange(parks_, false);
   std::vector<std::string> resume = gcode_lines(options_.resume_gcode);
   if (!resume.empty() || !options_.pause_gcode.empty())

@@ -150,10 +150,12 @@ void GcodeStream::handle(const GcodeReply& reply) {
   if (reply.kind != GcodeReplyKind::kTemperature || waits) alive_at_s_ = channel_.now_s();
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
+      complaint_.clear();
       if (reply.has_position && is_behind_program(last_)) position_seen_ = true;
       handle_ok(reply);
       break;
     case GcodeReplyKind::kResend:
+      complaint_.clear();
       handle_resend(reply.number);
       break;
     case GcodeReplyKind::kBusy:
@@ -167,12 +169,14 @@ void GcodeStream::handle(const GcodeReply& reply) {
       may_send_ = false;
       fail("The printer was reset in the middle of the print",
            "Clear the bed and print the job again; check the printer's power supply.");
-    case GcodeReplyKind::kHalted:
-      may_send_ = false;
-      fail("The printer has halted: " + reply.text,
-           "Find out why, switch the printer off and on, then print the job again.");
-    case GcodeReplyKind::kThermal:
-      handle_failed_heater(reply);
+    case GcodeReplyKind::kStopped:
+    case GcodeReplyKind::kRefused:
+      throw_told_failure(reply);
+    case GcodeReplyKind::kError:
+      handle_error(reply);
+      break;
+    case GcodeReplyKind::kUnknown:
+      handle_unknown(reply.text);
       break;
     case GcodeReplyKind::kTemperature:
       if (heating && !cancelling_ && !between_) reporter_.state(PrintState::kHeating, reply.text);
@@ -213,12 +217,10 @@ void GcodeStream::handle_resend(std::size_t asked) {
   if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
   // A printer that was reset asks for line 1; in the first lines that would seem to be near.
   if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 0))) {
-    if (asked == far_back_) {
-      may_send_ = false;
+    if (asked == far_back_)
       fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
                " after line " + std::to_string(last_) + "): it was probably reset",
            "Clear the bed and print the job again; check the printer's power supply.");
-    }
     far_back_ = asked;
     next = last_;
   }
@@ -230,20 +232,6 @@ void GcodeStream::handle_resend(std::size_t asked) {
         "The printer asked ten times for line " + std::to_string(next) + " (" + command(next) + ")",
         "Use a shorter or better shielded cable, and check that link.baud fits the printer.");
   resend_ = Resend{next, channel_.now_s() + kResendWait_s};
-}
-
-// A failing heater is followed by the printer's halt, after which nothing may be sent.
-void GcodeStream::handle_failed_heater(const GcodeReply& reply) {
-  may_send_ = reply.text.find("system stopped") == std::string::npos;
-  const double end = channel_.now_s() + 1;
-  while (may_send_ && channel_.now_s() < end) {
-    const auto next = channel_.receive(end - channel_.now_s());
-    if (next && (next->kind == GcodeReplyKind::kHalted || next->kind == GcodeReplyKind::kStart))
-      may_send_ = false;
-  }
-  fail(
-      "A heater of the printer failed: " + reply.text,
-      "Switch the printer off, check its heater and temperature sensor, then print the job again.");
 }
 
 void GcodeStream::send_raw(std::string_view line) {
@@ -258,9 +246,7 @@ void GcodeStream::watch_silence() {
   const std::string text = command(last_);
   const double limit =
       options_.timeout_s * (is_long(text) && !busy_seen_ && !cancelling_ ? kLongFactor : 1.0);
-  if (now - alive_at_s_ >= limit || attempts_ >= kMaxAttempts)
-    fail("The printer has not answered line " + std::to_string(last_) + " (" + text + ")",
-         "Check the cable, switch the printer off and on, then print the job again.");
+  if (now - alive_at_s_ >= limit || attempts_ >= kMaxAttempts) fail_in_silence();
   double patience = limit / kTriesPerTimeout;
   if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
   if (now - std::max(alive_at_s_, attempt_at_s_) >= patience) recover();
@@ -290,7 +276,10 @@ void GcodeStream::show_state() {
   if (cancelling_ || between_) return;
   const PrintState state =
       is_heating(command(last_)) ? PrintState::kHeating : PrintState::kPrinting;
-  if (reporter_.current() != state) reporter_.state(state);
+  if (state == PrintState::kPrinting)
+    reporter_.state(state, printing_text());
+  else if (reporter_.current() != state)
+    reporter_.state(state);
 }
 
 void GcodeStream::fail(const std::string& what, const std::string& hint) const {

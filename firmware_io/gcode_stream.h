@@ -30,8 +30,7 @@ class GcodeStream {
 
   bool was_cancelled() const { return cancelling_; }
   bool was_cancelled_at_printer() const { return cancelled_at_printer_; }
-  // False once the printer halted, was reset or stopped at once: nothing may be sent to it any
-  // more.
+  // False once the printer was reset or stopped at once: nothing may be sent to it any more.
   bool may_send() const { return may_send_; }
 
  private:
@@ -62,7 +61,6 @@ class GcodeStream {
   void handle(const GcodeReply& reply);
   void handle_ok(const GcodeReply& reply);
   void handle_resend(std::size_t asked);
-  void handle_failed_heater(const GcodeReply& reply);
   void watch_silence();
   void watch_unproven_life();
   void recover();
@@ -70,6 +68,12 @@ class GcodeStream {
   void ask_temperatures();
   void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
+
+  // gcode_complaints.cpp: what the machine finds fault with
+  void handle_error(const GcodeReply& reply);
+  [[noreturn]] void fail_in_silence() const;
+  void handle_unknown(const std::string& word);
+  std::string printing_text() const;
 
   // gcode_requests.cpp: what people and the machine ask for
   void obey_requests();
@@ -94,11 +98,14 @@ class GcodeStream {
   bool busy_seen_ = false;            // the printer says when it is busy
   std::string prompt_;                // what the printer asks its user,
   std::vector<std::string> choices_;  // and the answers it offers
+  std::string complaint_;             // an error line that neither an ok nor a Resend followed
+  std::vector<std::string> unknown_;  // words of commands that the printer does not know
   std::vector<Insertion> inserted_;
 
-  bool paused_ = false;   // wanted; begins between two lines
-  bool parks_ = false;    // the pause text is executed
-  bool between_ = false;  // in the lines around a pause
+  bool paused_ = false;     // wanted; begins between two lines
+  bool parks_ = false;      // the pause text is executed
+  std::string pause_text_;  // why, where nobody asked for it
+  bool between_ = false;    // in the lines around a pause
 
   // of the lines that are being exchanged
   std::size_t last_ = 0;  // the one given last

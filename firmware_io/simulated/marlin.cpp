@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <utility>
 
 namespace packmerger::simulated {
 
@@ -82,7 +83,23 @@ void Marlin::fail_heater() {
   kill("kill() called!");
 }
 
-void Marlin::tell_host(const std::string& action) { say("//action:" + action); }
+void Marlin::stop() {
+  say("Error:!! STOP called because of unhomed error - restart with M999");
+  stopped_ = true;
+  tool_.set_target(0, 0);
+  bed_.set_target(0, 0);
+}
+
+void Marlin::fail_fatally() {
+  say("fatal: Heater/sensor error - Printer stopped and heaters disabled due to this error. Fix "
+      "error and restart with M999.");
+}
+
+void Marlin::refuse_move() { refuses_move_ = true; }
+
+void Marlin::tell_host(const std::string& action) {
+  say((traits_.comment_blank ? "// action:" : "//action:") + action);
+}
 
 void Marlin::reset() {
   std::vector<std::string> executed = take_executed();
@@ -117,11 +134,21 @@ bool Marlin::still_blocked(double now_s) {
     case Blocked::kBed:
       return now_s < blocked_until_s_ && !skip_wait_;
     case Blocked::kUser:
-      return !skip_wait_;
+      return !skip_wait_ || ask_again();
     case Blocked::kNo:
       break;
   }
   return false;
+}
+
+// True where a filament change has another question.
+bool Marlin::ask_again() {
+  asks_to_purge_ = false;
+  if (!std::exchange(asks_again_, false)) return false;
+  skip_wait_ = false;
+  asks_to_purge_ = true;
+  ask("Paused", {"Purge More", "Continue"});
+  return true;
 }
 
 void Marlin::keep_alive(double now_s) {

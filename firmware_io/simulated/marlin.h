@@ -26,6 +26,9 @@ class Marlin : public Firmware {
   // What the machine may do in the middle of a print.
   void reset();
   void fail_heater();
+  void stop();          // Marlin's "!! STOP called": it obeys, but moves no more
+  void fail_fatally();  // as Repetier's firmware says it; it goes on answering
+  void refuse_move();   // the next one, as Klipper does
   void tell_host(const std::string& action);  // "pause", "resume", "cancel": pressed at its panel
 
  private:
@@ -46,6 +49,7 @@ class Marlin : public Firmware {
   void take_line(std::string line, double now_s);
   bool take_number(std::string& line);
   void refuse_line(const std::string& why);
+  void heed_answer(const std::string& line);
   void heed_at_once(const std::string& line, double now_s);
   void say(const std::string& line) { output_ += line + "\n"; }
 
@@ -53,8 +57,12 @@ class Marlin : public Firmware {
   bool execute_move(const std::string& command, double now_s);
   void execute_report(const std::string& command, double now_s);
   void execute_pause(const std::string& command, double now_s);
+  void change_filament(double now_s);
+  void ask(const std::string& question, const std::vector<std::string>& choices);
+  void say_unknown(const std::string& command);
   void block(Blocked why, double now_s, double until_s = kNever);
   bool still_blocked(double now_s);
+  bool ask_again();
   void keep_alive(double now_s);
   void report_idle(double now_s);
   void report_by_itself(double now_s);
@@ -68,6 +76,8 @@ class Marlin : public Firmware {
   Pace pace_;
   MarlinTraits traits_;
   bool dead_ = false;
+  bool stopped_ = false;
+  bool refuses_move_ = false;
 
   // the line
   std::string received_;
@@ -84,7 +94,9 @@ class Marlin : public Firmware {
   double blocked_until_s_ = 0;
   double next_busy_s_ = 0;
   double next_report_s_ = 0;
-  bool skip_wait_ = false;     // M108 came
+  bool skip_wait_ = false;   // M108 came
+  bool asks_again_ = false;  // behind the question that it asks now
+  bool asks_to_purge_ = false;
   double report_every_s_ = 0;  // M155
   double next_auto_s_ = kNever;
 

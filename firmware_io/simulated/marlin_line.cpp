@@ -116,9 +116,16 @@ void Marlin::refuse_line(const std::string& why) {
   if (traits_.resend_ok) say("ok");
 }
 
+// Asked whether to purge more, 0 does so and it asks again.
+void Marlin::heed_answer(const std::string& line) {
+  skip_wait_ = true;
+  asks_again_ = asks_again_ || (asks_to_purge_ && line.find("S0") != std::string::npos);
+}
+
 void Marlin::heed_at_once(const std::string& line, double now_s) {
-  if (is(line, "M108")) skip_wait_ = executing_;
-  if (is(line, "M876") && blocked_ == Blocked::kUser) skip_wait_ = true;
+  // Whether to purge more, Marlin's M108 does not answer.
+  if (is(line, "M108")) skip_wait_ = executing_ && !asks_to_purge_;
+  if (is(line, "M876") && blocked_ == Blocked::kUser) heed_answer(line);
   if (is(line, "M112")) kill("kill() called!");
   if (is(line, "M410")) {
     planned_ends_s_.clear();

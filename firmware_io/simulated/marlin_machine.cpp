@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <utility>
 
 #include "firmware_io/simulated/marlin.h"
 
@@ -39,6 +40,8 @@ void Marlin::plan(double seconds, double now_s) {
 void Marlin::execute(const std::string& command, double now_s) {
   executed_.push_back(command);
   block(Blocked::kNo, now_s);
+  if (is(command, "M600") && traits_.filament_change) return change_filament(now_s);
+  if (is(command, "M600")) return say_unknown(command);
   if (execute_move(command, now_s)) return;
   if (is(command, "M104") || is(command, "M109"))
     tool_.set_target(value(command, 'S').value_or(value(command, 'R').value_or(0)), now_s);
@@ -62,6 +65,15 @@ bool Marlin::execute_move(const std::string& command, double now_s) {
   if (is(command, "M83")) relative_e_ = true;
   const bool sets = is(command, "G92");
   const bool moves = is(command, "G0") || is(command, "G1");
+  if (moves && stopped_) {
+    say("Printer stopped due to errors. Fix the error and use M999 to restart. (Temperature is "
+        "reset. Set it after restarting)");
+    return true;
+  }
+  if (moves && std::exchange(refuses_move_, false)) {
+    say("!! Move out of range: 500.000 0.000 5.000 [0.000]");
+    return true;
+  }
   if (sets || moves) {
     double squared_mm = 0;
     double extruded_mm = 0;
@@ -118,8 +130,22 @@ void Marlin::execute_report(const std::string& command, double now_s) {
     say(std::string("Cap:EMERGENCY_PARSER:") + (traits_.emergency_parser ? "1" : "0"));
   }
   const char letter = command.empty() ? '?' : command[0];
-  if (letter != 'G' && letter != 'M' && letter != 'T')
+  if (letter != 'G' && letter != 'M' && letter != 'T') say_unknown(command);
+}
+
+void Marlin::say_unknown(const std::string& command) {
+  if (traits_.comment_blank)
+    say("// Unknown command:\"" + command.substr(0, command.find(' ')) + "\"");
+  else
     say("echo:Unknown command: \"" + command + "\"");
+}
+
+void Marlin::ask(const std::string& question, const std::vector<std::string>& choices) {
+  if (!traits_.prompts) return;
+  say("//action:prompt_end");
+  say("//action:prompt_begin " + question);
+  for (const std::string& choice : choices) say("//action:prompt_button " + choice);
+  say("//action:prompt_show");
 }
 
 void Marlin::execute_pause(const std::string& command, double now_s) {
@@ -127,13 +153,16 @@ void Marlin::execute_pause(const std::string& command, double now_s) {
     return block(Blocked::kUntil, now_s, now_s + pace_.machine_s(*seconds));
   const std::string text = command.size() > 3 ? command.substr(3) : "Click to resume";
   say("echo:" + text + (traits_.crlf ? "\r" : ""));
-  if (traits_.prompts) {
-    say("//action:prompt_end");
-    say("//action:prompt_begin " + text);
-    say("//action:prompt_button Continue");
-    say("//action:prompt_show");
-  }
+  ask(text, {"Continue"});
   block(Blocked::kUser, now_s);
+}
+
+// The first question stands until it is answered by M876 or M108; the second asks for more to be
+// purged (0) or to go on (1), which only M876 answers.
+void Marlin::change_filament(double now_s) {
+  ask("Nozzle Parked", {"Continue"});
+  block(Blocked::kUser, now_s);
+  asks_again_ = true;
 }
 
 }  // namespace packmerger::simulated

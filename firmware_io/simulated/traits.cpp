@@ -24,7 +24,9 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"reports_unasked", &T::reports_unasked},
                                  {"resend_error", &T::resend_error},
                                  {"resend_ok", &T::resend_ok},
-                                 {"resend_short", &T::resend_short}};
+                                 {"resend_short", &T::resend_short},
+                                 {"filament_change", &T::filament_change},
+                                 {"comment_blank", &T::comment_blank}};
   return names;
 }
 
@@ -67,6 +69,7 @@ MarlinTraits marlin_1_1() {
   traits.rx_overflow = true;
   traits.emergency_parser = false;
   traits.prompts = false;
+  traits.filament_change = false;
   return traits;
 }
 

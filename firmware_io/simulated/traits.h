@@ -25,6 +25,8 @@ struct MarlinTraits {
   bool resend_error = true;      // an "Error:" line before "Resend"
   bool resend_ok = true;         // an "ok" behind it
   bool resend_short = false;     // "rs N3" for "Resend: 3"
+  bool filament_change = true;   // knows M600, and asks its user twice; else an unknown command
+  bool comment_blank = false;    // "// action:", "// Unknown command:", as Klipper writes them
 };
 
 MarlinTraits marlin_1_1();

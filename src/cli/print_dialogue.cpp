@@ -69,6 +69,8 @@ void PrintDialogue::tell(const PrintReport& report) {
     else
       say(question_of(report));
   }
+  const bool told = report.state == PrintState::kPaused || report.state == PrintState::kPrinting;
+  if (told && !report.text.empty()) say(report.text);
   if (report.state == PrintState::kCancelling)
     say("Cancelling, please wait until the printer has stopped.");
   if (report.state != PrintState::kWaiting && question_ == Question::kOfPrinter)

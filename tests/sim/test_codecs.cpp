@@ -89,18 +89,54 @@ TEST(GcodeCodec, ReadsReplies) {
   EXPECT_EQ(kind("wait"), GcodeReplyKind::kIdle);
   EXPECT_EQ(kind("start"), GcodeReplyKind::kStart);
   EXPECT_EQ(kind("echo: External Reset"), GcodeReplyKind::kStart);
-  EXPECT_EQ(kind("Error:Printer halted. kill() called!"), GcodeReplyKind::kHalted);
-  EXPECT_EQ(kind("Error:MAXTEMP triggered, system stopped! Heater_ID: bed"),
-            GcodeReplyKind::kThermal);
   EXPECT_EQ(read_gcode_reply("//action:prompt_begin Change tool").text, "Change tool");
 }
 
-// These errors are recoverable: the Resend that follows says what to do.
-TEST(GcodeCodec, ErrorsThatAreNotFatal) {
+// Marlin's, Repetier's and Klipper's words for having stopped.
+TEST(GcodeCodec, WordsOfAStop) {
+  for (const char* line :
+       {"Error:Printer halted. kill() called!", "Error:!! KILL caused by KILL button/pin",
+        "Error:!! STOP called because of unhomed error - restart with M999",
+        "Error:Printer stopped due to errors. Fix the error and use M999 to restart",
+        "Printer stopped due to errors. Fix the error and use M999 to restart.",
+        "fatal: Heater/sensor error - Printer stopped and heaters disabled due to this error.",
+        "!! Shutdown due to M112 command", "error:printer HALTED"})
+    EXPECT_EQ(kind(line), GcodeReplyKind::kStopped) << line;
+  for (const char* line : {"Error:MAXTEMP triggered, system stopped! Heater_ID: bed",
+                           "Error:Heating failed, system stopped! Heater_ID: 0"}) {
+    EXPECT_EQ(kind(line), GcodeReplyKind::kStopped) << line;
+    EXPECT_TRUE(read_gcode_reply(line).heater_failed) << line;
+  }
+  EXPECT_EQ(kind("!! Move out of range: 500.000 0.000 0.000 [0.000]"), GcodeReplyKind::kRefused);
+  EXPECT_EQ(kind("echo:halted"), GcodeReplyKind::kOther) << "what a program has it say";
+}
+
+TEST(GcodeCodec, CommandsThatThePrinterDoesNotKnow) {
+  for (const char* line : {"// Unknown command:\"M600\"", "echo:Unknown command: \"M600 U5 L5\"",
+                           "Unknown command:M600"}) {
+    EXPECT_EQ(kind(line), GcodeReplyKind::kUnknown) << line;
+    EXPECT_EQ(read_gcode_reply(line).text, "M600") << line;
+  }
+}
+
+TEST(GcodeCodec, ActionsHoweverTheyAreSpelt) {
+  for (const std::string start : {"//action:", "// action:", "//  action:"}) {
+    EXPECT_EQ(kind(start + "cancel"), GcodeReplyKind::kCancel);
+    EXPECT_EQ(kind(start + "pause"), GcodeReplyKind::kPause);
+    EXPECT_FALSE(read_gcode_reply(start + "pause").waiting);
+    EXPECT_TRUE(read_gcode_reply(start + "paused").waiting);
+    EXPECT_EQ(kind(start + "resume"), GcodeReplyKind::kResume);
+    EXPECT_EQ(kind(start + "resumed"), GcodeReplyKind::kResume);
+  }
+  EXPECT_EQ(kind("// what action:cancel does"), GcodeReplyKind::kOther);
+}
+
+// The Resend that follows says what to do.
+TEST(GcodeCodec, ErrorsThatMayBeHarmless) {
   for (const char* line : {"Error:checksum mismatch, Last Line: 2", "Error:checksum misoatch",
                            "Error:Line Number is not Last Line Number+1, Last Line: 3",
                            "Error:No Checksum with line number, Last Line: 8"})
-    EXPECT_EQ(kind(line), GcodeReplyKind::kOther) << line;
+    EXPECT_EQ(kind(line), GcodeReplyKind::kError) << line;
 }
 
 TEST(S3gCodec, FramesAsTheFirmwareExpects) {

@@ -76,8 +76,9 @@ void expect_true_cause(const Error& error, FaultyPort& port, const std::string& 
   // A flipped bit makes M112 of M110, which an emergency parser obeys.
   const auto& executed = port.executed();
   const bool halted = std::find(executed.begin(), executed.end(), "halt") != executed.end();
-  if (says("halted") || says("heater"))
-    RC_ASSERT(halted || (port.had_mishap() && mishap == "heater"));
+  const bool broke = mishap == "heater" || mishap == "stop" || mishap == "fatal";
+  if (says("halted") || says("stopped") || says("heater") || says("refuses"))
+    RC_ASSERT(halted || (port.had_mishap() && (broke || mishap == "refused")));
   if (says("its own card")) RC_ASSERT(port.had_mishap() && mishap == "card");
   if (says("cancelled at")) RC_ASSERT(port.had_mishap() && mishap == "panel");
 }
@@ -128,6 +129,14 @@ struct Tally {
 // What the machine makes of its queue when nobody speaks to it any more.
 constexpr double kAfterwards_s = 600;
 
+void cause(const std::string& mishap, simulated::Marlin& machine) {
+  if (mishap == "reset") machine.reset();
+  if (mishap == "heater") machine.fail_heater();
+  if (mishap == "stop") machine.stop();
+  if (mishap == "fatal") machine.fail_fatally();
+  if (mishap == "refused") machine.refuse_move();
+}
+
 void check_gcode_print(Tally& tally, simulated::MarlinTraits traits) {
   const bool instant = *rc::gen::arbitrary<bool>();
   // Now and then something in which firmwares differ.
@@ -136,8 +145,8 @@ void check_gcode_print(Tally& tally, simulated::MarlinTraits traits) {
       simulated::set_trait(traits, name + (*rc::gen::arbitrary<bool>() ? "=on" : "=off"));
   simulated::Marlin firmware(simulated::Pace{1, instant}, traits);
   FaultyPort port(firmware, any_rates(), *rc::gen::arbitrary<std::uint64_t>());
-  const std::string mishap = *rc::gen::element<std::string>("reset", "heater");
-  port.on_mishap = [&] { mishap == "reset" ? firmware.reset() : firmware.fail_heater(); };
+  const auto mishap = *rc::gen::element<std::string>("reset", "heater", "stop", "fatal", "refused");
+  port.on_mishap = [&] { cause(mishap, firmware); };
   const std::vector<std::string> program = gcode_program(kCommands);
   PrintControl control;
   pause_sometimes(port, control);

@@ -35,8 +35,10 @@ TEST(Marlin, PrintsAndProvesIt) {
   EXPECT_EQ(port.executed(), executed);
 }
 
-// Once the machine has halted or was reset, not a byte may follow.
-void expect_silence_after(const std::function<void(Marlin&)>& event, const std::string& cause) {
+// Behind a failure nothing of the program follows: after a reset not a byte, otherwise the safe
+// text.
+void expect_end_after(const std::function<void(Marlin&)>& event, const std::string& cause,
+                      const std::string& safe) {
   Marlin firmware(Pace{1, true});
   FaultyPort port(firmware);
   std::size_t sent_before = 0;
@@ -50,17 +52,27 @@ void expect_silence_after(const std::function<void(Marlin&)>& event, const std::
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->fault(), Fault::kIo);
   EXPECT_THAT(failure->what(), HasSubstr(cause));
-  // The line that was on its way when it happened is the last.
-  EXPECT_LT(port.sent.size(), sent_before + 96) << port.sent.substr(sent_before);
-  EXPECT_EQ(port.sent.find("M104 S0\n"), std::string::npos);
+  // The line that was on its way when it happened is the last of the program.
+  EXPECT_LT(port.sent.size(), sent_before + 96 + safe.size()) << port.sent.substr(sent_before);
+  EXPECT_EQ(port.sent.find("\nM104 S0\n") != std::string::npos, !safe.empty());
+  EXPECT_THAT(port.sent, ::testing::EndsWith(safe));
 }
 
+const std::string kSafe = "M104 S0\nM140 S0\nM155 S0\n";
+
 TEST(Marlin, ResetEndsThePrint) {
-  expect_silence_after([](Marlin& marlin) { marlin.reset(); }, "reset");
+  expect_end_after([](Marlin& marlin) { marlin.reset(); }, "reset", "");
 }
 
 TEST(Marlin, FailedHeaterEndsThePrint) {
-  expect_silence_after([](Marlin& marlin) { marlin.fail_heater(); }, "Thermal Runaway");
+  expect_end_after([](Marlin& marlin) { marlin.fail_heater(); }, "Thermal Runaway", kSafe);
+}
+
+TEST(Marlin, AStopEndsThePrintAndHeatersAreTurnedOff) {
+  expect_end_after([](Marlin& marlin) { marlin.stop(); }, "restart with M999", kSafe);
+  expect_end_after([](Marlin& marlin) { marlin.fail_fatally(); }, "fatal: Heater/sensor error",
+                   kSafe);
+  expect_end_after([](Marlin& marlin) { marlin.refuse_move(); }, "!! Move out of range", kSafe);
 }
 
 TEST(Marlin, CancelWhileHeatingActsWithinASecond) {

@@ -142,6 +142,45 @@ TEST(MarlinTraps, AsksItsUser) {
   EXPECT_THAT(wire.says("M112\n"), HasSubstr("//action:poweroff\n"));
 }
 
+TEST(MarlinTraps, AFilamentChangeAsksTwice) {
+  Marlin marlin(kRealTime);
+  Wire wire(marlin);
+  EXPECT_THAT(wire.says("M600\n"), HasSubstr("prompt_begin Nozzle Parked\n"));
+  const std::string purges = wire.says("M108\n");
+  EXPECT_THAT(purges, HasSubstr("//action:prompt_button Purge More\n//action:prompt_button Cont"));
+  EXPECT_EQ(wire.says("M108\n"), "");
+  EXPECT_THAT(wire.says("M876 S0\n"), HasSubstr("Purge More")) << "more was purged";
+  EXPECT_EQ(count(wire.says("M876 S1\n"), "ok\n"), 5U);
+  Marlin plain(kRealTime, marlin_1_1());
+  EXPECT_EQ(Wire(plain).says("M600 U5\n"), "echo:Unknown command: \"M600 U5\"\nok\n");
+}
+
+TEST(MarlinTraps, KlipperWritesABlankBehindSlashes) {
+  Marlin marlin(kRealTime, with("comment_blank", with("filament_change=off")));
+  Wire wire(marlin);
+  EXPECT_EQ(wire.says("M600 U5\n"), "// Unknown command:\"M600\"\nok\n");
+  marlin.tell_host("paused");
+  EXPECT_EQ(wire.says(""), "// action:paused\n");
+}
+
+TEST(MarlinTraps, AStoppedPrinterSaysSoAtEveryMove) {
+  Marlin marlin(kRealTime);
+  Wire wire(marlin);
+  wire.says("M104 S200\n");
+  marlin.stop();
+  EXPECT_THAT(wire.says(""), HasSubstr("Error:!! STOP called"));
+  EXPECT_THAT(wire.says("G1 X1\n"), StartsWith("Printer stopped due to errors."));
+  EXPECT_THAT(wire.says("M105\n"), HasSubstr("/0.00"));
+}
+
+TEST(MarlinTraps, ARefusedMoveIsAnsweredWithOkAllTheSame) {
+  Marlin marlin(kRealTime);
+  Wire wire(marlin);
+  marlin.refuse_move();
+  EXPECT_THAT(wire.says("G1 X1\n"), ::testing::EndsWith("\nok\n"));
+  EXPECT_EQ(wire.says("G1 X1\n"), "ok\n");
+}
+
 TEST(MarlinTraps, SomeLinesEndInCarriageReturns) {
   Marlin marlin(kRealTime, with("crlf=off", with("prompts=off")));
   Wire wire(marlin);

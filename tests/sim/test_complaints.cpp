@@ -1,0 +1,155 @@
+// What becomes of a print whose printer complains: which words end it, and which it goes on after.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "firmware_io/gcode.h"
+#include "firmware_io/simulated/marlin.h"
+#include "sim/programs.h"
+#include "sim/scenario.h"
+
+namespace packmerger::test {
+namespace {
+
+using simulated::Marlin;
+using simulated::MarlinTraits;
+using simulated::Pace;
+using ::testing::HasSubstr;
+
+// Answers line 7 in its own way, and others as it should.
+std::optional<Error> print_with_answer(const std::string& answer,
+                                       std::vector<std::string>& executed) {
+  Parrot firmware([&, answered = false](const std::string& line) mutable {
+    if (line.rfind("N7 ", 0) == 0 && !std::exchange(answered, true)) return answer;
+    return line.find("M114") == std::string::npos ? polite(line) : "X:0 Y:0 Z:0 E:0\nok\n";
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  executed = port.executed();
+  return failure;
+}
+
+struct Complaint {
+  const char* answer;
+  const char* cause;  // empty: the print goes on
+};
+
+class Complaints : public ::testing::TestWithParam<Complaint> {};
+
+TEST_P(Complaints, EndThePrintOrDoNot) {
+  std::vector<std::string> executed;
+  const auto failure = print_with_answer(GetParam().answer, executed);
+  EXPECT_EQ(failure.has_value(), *GetParam().cause != '\0');
+  if (!failure) return;
+  EXPECT_EQ(failure->fault(), Fault::kIo);
+  EXPECT_FALSE(failure->hint().empty());
+  EXPECT_THAT(failure->what(), HasSubstr(GetParam().cause));
+  EXPECT_EQ(executed.back(), "M140 S0") << "the safe text is sent";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Complaints,
+    ::testing::Values(
+        // harmless, because of what follows
+        Complaint{"Error:checksum mismatch, Last Line: 6\nResend: 7\nok\n", ""},
+        Complaint{"Error:checksum misoatch, Last Line: 6\nResend: 7\nok\n", ""},
+        Complaint{"Errxr:chec\xFFsum\nResend: 7\nok\n", ""},
+        Complaint{"Error:Probing Failed\nok\n", ""},
+        // not
+        Complaint{"Error:Printer halted. kill() called!\n", "kill() called!"},
+        Complaint{"Error:!! STOP called because of unhomed error - restart with M999\nok\n",
+                  "STOP called"},
+        Complaint{"fatal: extruder switch decoupled\nok\n", "fatal: extruder"},
+        Complaint{"!! Must home axis first\nok\n", "!! Must home axis first"},
+        Complaint{"Error:Heating failed, system stopped! Heater_ID: 0\n",
+                  "A heater of the printer"}));
+
+// A halt whose words are garbled is known by the silence that follows, and told in its words.
+TEST(GarbledHalt, IsToldOnceNothingFollows) {
+  bool halted = false;
+  Parrot firmware([&](const std::string& line) {
+    if (line.rfind("N7 ", 0) != 0 && !halted) return polite(line);
+    return std::exchange(halted, true) ? std::string() : "Error:Printer halxed. ki#l() caled!\n";
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("Error:Printer halxed. ki#l() caled!"));
+  EXPECT_LT(port.now_s(), 40);
+}
+
+MarlinTraits without_filament_change(bool comments) {
+  MarlinTraits traits;
+  traits.filament_change = false;
+  traits.comment_blank = comments;
+  return traits;
+}
+
+// A filament change that the printer does not know is made by hand: the print stands until then.
+TEST(UnknownCommands, WhatAPersonWasToDoIsWaitedFor) {
+  for (const bool comments : {true, false}) {
+    Marlin firmware(Pace{1, false}, without_filament_change(comments));
+    FaultyPort port(firmware);
+    PrintControl control;
+    std::vector<std::string> program = gcode_program(100);
+    program.insert(program.begin() + 50, "M600 U5");
+    std::string told;
+    std::size_t done = 0;
+    StreamOptions options = scenario_options();
+    options.pause_gcode = "M117 parked\n";
+    options.window_bytes = 96;
+    const auto failure = print(
+        port, true, joined(program), control,
+        [&](const PrintReport& report) {
+          if (report.state != PrintState::kPaused) return;
+          if (told.empty()) told = report.text;
+          done = report.done;
+          if (port.now_s() > 3600) control.resume();
+        },
+        options);
+    EXPECT_FALSE(failure) << failure->what();
+    EXPECT_THAT(told, HasSubstr("does not know \"M600 U5\""));
+    EXPECT_EQ(done, 51u) << "it stands behind that line";
+    EXPECT_EQ(count(port.executed(), "M117 parked"), 1u);
+    EXPECT_EQ(only(port.executed(), program), program);
+  }
+}
+
+TEST(UnknownCommands, WhatThePrintCannotDoWithoutEndsIt) {
+  for (const char* command : {"G2 X1 Y1 I1", "M109 S200", "T1"}) {
+    Parrot firmware([&](const std::string& line) {
+      const bool unknown = line.find(command) != std::string::npos;
+      return unknown ? "// Unknown command:\"" + std::string(gcode_word(command)) + "\"\nok\n"
+                     : polite(line);
+    });
+    FaultyPort port(firmware);
+    PrintControl control;
+    const auto failure =
+        print(port, true, std::string("G28\nG1 X1\n") + command + "\nG1 X2\n", control);
+    ASSERT_TRUE(failure) << command;
+    EXPECT_THAT(failure->what(), HasSubstr(command));
+    EXPECT_EQ(port.executed().back(), "M140 S0");
+  }
+}
+
+TEST(UnknownCommands, OthersAreToldOnce) {
+  Parrot firmware([&](const std::string& line) {
+    for (const char* word : {"M73", "M204", "T0"})
+      if (line.find(word) != std::string::npos)
+        return "// Unknown command:\"" + std::string(word) + "\"\nok\n";
+    return line.find("M114") == std::string::npos ? polite(line) : "X:0 Y:0 Z:0 E:0\nok\n";
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  std::string told;
+  const auto failure = print(port, true, "M73 P0\nT0\nM204 S1\nM73 P9\nG1 X2\nG1 X3\n", control,
+                             [&](const PrintReport& report) {
+                               if (report.state == PrintState::kPrinting) told = report.text;
+                             });
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(told, "the printer passes over what it does not know: M73, T0, M204");
+}
+
+}  // namespace
+}  // namespace packmerger::test
