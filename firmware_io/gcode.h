@@ -71,8 +71,8 @@ enum class GcodeReplyKind {
 
 struct GcodeReply {
   GcodeReplyKind kind = GcodeReplyKind::kOther;
-  std::string text;  // the whole line unless said otherwise above
-  std::size_t number = 0;
+  std::string text;        // the whole line unless said otherwise above
+  std::size_t number = 0;  // of kOk: the line, where the printer names it
   bool waiting = false;
   bool heater_failed = false;         // of kStopped
   bool has_temperature = false;       // of kOk: the answer to M105

@@ -159,9 +159,12 @@ bool is_ok(std::string_view line) {
 
 void read_ok(std::string_view line, GcodeReply& reply) {
   reply.kind = GcodeReplyKind::kOk;
-  reply.has_temperature = has(line, " T:") || has(line, " T0:") || has(line, " B:");
-  if (reply.has_temperature) reply.heaters = read_heaters(line);
+  // An M114 on one line may count steps by letters that are heaters' too.
   reply.has_position = has(line, "X:") && has(line, "Y:");
+  reply.has_temperature =
+      !reply.has_position && (has(line, " T:") || has(line, " T0:") || has(line, " B:"));
+  if (reply.has_temperature) reply.heaters = read_heaters(line);
+  if (line.starts_with("ok N")) reply.number = first_number(line);
   reply.has_firmware = has(line, "FIRMWARE_NAME:");
 }
 

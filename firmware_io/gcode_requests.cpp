@@ -112,8 +112,7 @@ void GcodeStream::stand_still() {
     reporter_.tick();
     if (channel_.now_s() - asked_at_s >= kPoll_s) {
       unanswered_.clear();
-      send_raw("M105");
-      m105_behind_ = true;
+      ask_for_proof();
       asked_at_s = channel_.now_s();
     }
     const auto reply = channel_.receive(kSlice_s);

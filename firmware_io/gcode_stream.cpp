@@ -8,24 +8,11 @@ namespace packmerger {
 
 namespace {
 
-constexpr int kMaxSameResend = 10;
-constexpr int kMaxAttempts = 10;
 constexpr int kMaxUnproven = 5;
-constexpr int kTriesPerTimeout = 5;
+constexpr const char* kNoPositions = "M154 S0";
 constexpr std::size_t kMaxPositionTries = 10;
-// A request for a line further back than this is noise, or the printer was reset.
-constexpr std::size_t kSlack = 10;
-// With a window: this many lines at once, and one at a time for so many after any trouble.
-constexpr std::size_t kMostLines = 3;
+// One line at a time for so many after any trouble.
 constexpr std::size_t kCareful = 10;
-// The ok that belongs to a Resend follows at once; some firmwares send none.
-constexpr double kResendWait_s = 0.5;
-// Further answers on their way settle whether a request for a line is still true.
-constexpr double kSettle_s = 0.05;
-// Marlin says "busy" every two seconds.
-constexpr double kBusyPatience_s = 6;
-// A command that blocks longer than usual without a word is given this many time-outs.
-constexpr double kLongFactor = 5;
 
 }  // namespace
 
@@ -46,10 +33,17 @@ void GcodeStream::run() {
     if (number > commands_.size() + 1 + kMaxPositionTries)
       fail("The printer does not say where it is (M114), so the end of the print is unproven",
            "Look at the print, and switch the printer off and on before the next job.");
-    const bool may_pause = number == highest_ + 1 && number <= commands_.size();
-    number = paused_ && may_pause && !cancelling_ ? pause(number) : exchange(number);
+    if (number == commands_.size() + 1) silence_positions(number);
+    number = paused_ && may_pause_before(number) && !cancelling_ ? pause(number) : exchange(number);
     tell_done(number);
   }
+}
+
+// Where the printer tells its position unasked, M114 would prove nothing.
+void GcodeStream::silence_positions(std::size_t number) {
+  if (!positions_unasked_ || commands_.back() == kNoPositions) return;
+  commands_.emplace_back(kNoPositions);
+  inserted_.push_back({number, 1});
 }
 
 std::string GcodeStream::command(std::size_t number) const {
@@ -73,8 +67,10 @@ void GcodeStream::tell_done(std::size_t next) {
 std::size_t GcodeStream::exchange(std::size_t number) {
   resend_.reset();
   m105_behind_ = taken_for_granted_ = false;
-  attempts_ = 0;
-  give(number);
+  if (last_ > 0) hear_what_came();
+  if (paused_ && !cancelling_ && may_pause_before(number)) return number;
+  const bool gives = !resend_;
+  if (gives) give(number);
   while (!unanswered_.empty() || resend_) {
     if (resend_ && channel_.now_s() >= resend_->due_s) {
       unanswered_.clear();
@@ -82,14 +78,11 @@ std::size_t GcodeStream::exchange(std::size_t number) {
       return resend_->number;
     }
     obey_requests();
-    watch_unproven_life();
     reporter_.tick();
     if (may_give_another()) give(last_ + 1);
     ask_temperatures();
-    if (const auto reply = channel_.receive(resend_ ? kSettle_s : kSlice_s))
-      handle(*reply);
-    else
-      watch_silence();
+    if (const auto reply = channel_.receive(resend_ ? kSettle_s : kSlice_s)) handle(*reply);
+    watch_silence();
   }
   if (taken_for_granted_) careful_until_ = last_ + kCareful;
   unproven_ = taken_for_granted_ ? unproven_ + 1 : 0;
@@ -97,7 +90,21 @@ std::size_t GcodeStream::exchange(std::size_t number) {
     fail("The printer no longer acknowledges what it is sent",
          "Check the cable, switch the printer off and on, then print the job again.");
   if (!taken_for_granted_) far_back_ = 0;
-  return last_ + 1;
+  return gives ? last_ + 1 : number;
+}
+
+// An ok that came though nothing is owed must not answer the next line.
+void GcodeStream::hear_what_came() {
+  constexpr int kMost = 100;  // of a printer that never falls silent
+  for (int i = 0; i < kMost; ++i) {
+    const auto reply = channel_.receive(0);
+    if (!reply) return;
+    handle(*reply);
+  }
+}
+
+bool GcodeStream::may_pause_before(std::size_t number) const {
+  return number == highest_ + 1 && number <= commands_.size() && !between_;
 }
 
 // Within the window, and never behind a command that blocks or any trouble. Marlin queues four
@@ -115,39 +122,23 @@ bool GcodeStream::may_give_another() const {
 
 void GcodeStream::give(std::size_t number) {
   std::string line = numbered_gcode(number, command(number));
-  unanswered_.push_back({number, line.size()});
+  unanswered_.push_back({number, line.size(), gcode_word(command(number)) == "M105"});
   line.pop_back();
   channel_.send(line);
   last_ = number;
   highest_ = std::max(highest_, number);
-  alive_at_s_ = attempt_at_s_ = works_at_s_ = channel_.now_s();
-  doubt_after_s_ = options_.timeout_s;
+  alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
+  patience_factor_ = 1;
+  heat_.begin(command(number));
   prompt_.clear();
   choices_.clear();
   show_state();
 }
 
-// Of a printer that does not tell them by itself. The answer also says that everything before was
-// answered or got lost.
-void GcodeStream::ask_temperatures() {
-  constexpr double kPoll_s = 5;
-  if (abilities_.autoreport || cancelling_ || resend_ || m105_behind_ ||
-      unanswered_.size() >= kMostLines || channel_.now_s() - asked_temperatures_at_s_ < kPoll_s)
-    return;
-  asked_temperatures_at_s_ = channel_.now_s();
-  send_raw("M105");
-  m105_behind_ = true;
-}
-
 void GcodeStream::handle(const GcodeReply& reply) {
   const bool heating = is_heating(command(last_));
   reporter_.heaters(reply.heaters);
-  const bool waits_for_heat = reply.text.find(" W:") != std::string::npos;
-  if (reply.kind == GcodeReplyKind::kBusy || waits_for_heat) works_at_s_ = channel_.now_s();
-  // A temperature report may come on its own for ever: it proves nothing unless it is that of a
-  // wait for heat, which has a W where the others are asked for too.
-  const bool waits = heating && (!abilities_.autoreport || waits_for_heat);
-  if (reply.kind != GcodeReplyKind::kTemperature || waits) alive_at_s_ = channel_.now_s();
+  if (proves_life(reply)) alive_at_s_ = channel_.now_s();
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
       complaint_.clear();
@@ -159,8 +150,7 @@ void GcodeStream::handle(const GcodeReply& reply) {
       handle_resend(reply.number);
       break;
     case GcodeReplyKind::kBusy:
-      busy_seen_ = true;
-      if (reply.waiting && !cancelling_) reporter_.state(PrintState::kWaiting, prompt_, choices_);
+      handle_busy(reply);
       break;
     case GcodeReplyKind::kIdle:
       if (channel_.now_s() - attempt_at_s_ > 1) recover();
@@ -183,6 +173,7 @@ void GcodeStream::handle(const GcodeReply& reply) {
       break;
     case GcodeReplyKind::kPosition:
       if (is_behind_program(last_)) position_seen_ = true;
+      if (gcode_word(command(last_)) != "M114") positions_unasked_ = true;
       break;
     default:
       if (!cancelling_) handle_action(reply);
@@ -190,86 +181,9 @@ void GcodeStream::handle(const GcodeReply& reply) {
   }
 }
 
-void GcodeStream::handle_ok(const GcodeReply& reply) {
-  if (!unanswered_.empty()) {
-    const std::size_t number = unanswered_.front().number;
-    unanswered_.pop_front();
-    if (resend_)
-      resend_->due_s = channel_.now_s() + kSettle_s;
-    else if (number > 0) {
-      acknowledged_ = std::max(acknowledged_, number);
-      tell_done(number + 1);
-    }
-  } else if (resend_) {
-    // The request was stale, for instance the answer to a doubled line: the line itself was taken.
-    resend_.reset();
-  }
-  if (m105_behind_ && reply.has_temperature) {
-    // Answers come in order, so whatever was still owed got lost.
-    taken_for_granted_ = !unanswered_.empty() && !resend_;
-    unanswered_.clear();
-    m105_behind_ = false;
-  }
-}
-
-void GcodeStream::handle_resend(std::size_t asked) {
-  std::size_t next = asked;
-  if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
-  // A printer that was reset asks for line 1; in the first lines that would seem to be near.
-  if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 0))) {
-    if (asked == far_back_)
-      fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
-               " after line " + std::to_string(last_) + "): it was probably reset",
-           "Clear the bed and print the job again; check the printer's power supply.");
-    far_back_ = asked;
-    next = last_;
-  }
-  // Every line that was on its way behind the one it lacks asks for that one again.
-  if (!resend_ || next != asked_) asked_times_ = next == asked_ ? asked_times_ + 1 : 1;
-  asked_ = next;
-  if (asked_times_ >= kMaxSameResend)
-    fail(
-        "The printer asked ten times for line " + std::to_string(next) + " (" + command(next) + ")",
-        "Use a shorter or better shielded cable, and check that link.baud fits the printer.");
-  resend_ = Resend{next, channel_.now_s() + kResendWait_s};
-}
-
 void GcodeStream::send_raw(std::string_view line) {
   channel_.send(line);
-  unanswered_.push_back({0, line.size() + 1});
-}
-
-void GcodeStream::watch_silence() {
-  const double now = channel_.now_s();
-  const bool stands_still = paused_ && !parks_ && !between_;
-  if (stands_still) alive_at_s_ = now;  // for as long as the machine likes
-  const std::string text = command(last_);
-  const double limit =
-      options_.timeout_s * (is_long(text) && !busy_seen_ && !cancelling_ ? kLongFactor : 1.0);
-  if (now - alive_at_s_ >= limit || attempts_ >= kMaxAttempts) fail_in_silence();
-  double patience = limit / kTriesPerTimeout;
-  if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
-  if (now - std::max(alive_at_s_, attempt_at_s_) >= patience) recover();
-}
-
-// Reports that come unasked go on when the answer to the line got lost, so they are trusted for a
-// while only, and then for twice as long: heating may truly take that time.
-void GcodeStream::watch_unproven_life() {
-  if (!is_heating(command(last_)) || channel_.now_s() - works_at_s_ < doubt_after_s_) return;
-  works_at_s_ = channel_.now_s();
-  doubt_after_s_ *= 2;
-  recover();
-}
-
-// An empty line ends a half line that lost bytes left in the printer: Marlin then asks for the line
-// again. M105 is answered by a printer that is alive, and only behind everything sent before. The
-// same line is never just repeated: Marlin 2.1 answers a line that it already has with silence.
-void GcodeStream::recover() {
-  channel_.send("");
-  send_raw("M105");
-  m105_behind_ = true;
-  ++attempts_;
-  attempt_at_s_ = channel_.now_s();
+  unanswered_.push_back({0, line.size() + 1, false});
 }
 
 void GcodeStream::show_state() {

@@ -9,6 +9,7 @@
 
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode_channel.h"
+#include "firmware_io/heat_watch.h"
 #include "firmware_io/print_state.h"
 
 namespace packmerger {
@@ -34,10 +35,16 @@ class GcodeStream {
   bool may_send() const { return may_send_; }
 
  private:
+  // Lines on their way at most: Marlin queues four and reads no further.
+  static constexpr std::size_t kMostLines = 3;
+  // Further answers on their way settle whether a request for a line is still true.
+  static constexpr double kSettle_s = 0.05;
+
   // A line that was sent and not answered. number 0: one without a number.
   struct Given {
     std::size_t number = 0;
     std::size_t bytes = 0;
+    bool asks_temperatures = false;  // M105
   };
   // A line that the printer asked for, and when to give it even if no further ok comes.
   struct Resend {
@@ -58,16 +65,25 @@ class GcodeStream {
   std::size_t exchange(std::size_t number);
   void give(std::size_t number);
   bool may_give_another() const;
+  void hear_what_came();
+  bool may_pause_before(std::size_t number) const;
+  void silence_positions(std::size_t number);
   void handle(const GcodeReply& reply);
-  void handle_ok(const GcodeReply& reply);
-  void handle_resend(std::size_t asked);
-  void watch_silence();
-  void watch_unproven_life();
-  void recover();
   void send_raw(std::string_view line);
-  void ask_temperatures();
   void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
+
+  // gcode_answers.cpp: what answers are for, and signs of life
+  std::size_t answered_by(const GcodeReply& ok) const;
+  void handle_ok(const GcodeReply& reply);
+  void handle_resend(std::size_t asked);
+  bool proves_life(const GcodeReply& reply);
+  void handle_busy(const GcodeReply& reply);
+  void watch_silence();
+  void recover();
+  void ask_for_proof();
+  bool wants_proof() const;
+  void ask_temperatures();
 
   // gcode_complaints.cpp: what the machine finds fault with
   void handle_error(const GcodeReply& reply);
@@ -113,21 +129,28 @@ class GcodeStream {
   std::optional<Resend> resend_;
   bool m105_behind_ = false;        // an M105 was sent behind them
   bool taken_for_granted_ = false;  // only that M105 was answered
-  int attempts_ = 0;
   double asked_temperatures_at_s_ = 0;
+  double given_at_s_ = 0;
   double alive_at_s_ = 0;
   double attempt_at_s_ = 0;
-  double works_at_s_ = 0;  // last proof that the printer is still at the line
-  double doubt_after_s_ = 0;
+  double patience_factor_ = 1;
+  double busy_at_s_ = 0;
+  HeatWatch heat_;
 
   // over several exchanges
-  std::size_t highest_ = 0;        // of all lines ever given
-  std::size_t acknowledged_ = 0;   // the highest that an ok was for
-  std::size_t careful_until_ = 0;  // the line from which the window may be used again
-  int unproven_ = 0;               // exchanges in a row that were taken for granted
-  std::size_t asked_ = 0;          // the line last asked for,
-  int asked_times_ = 0;            // and how often
-  std::size_t far_back_ = 0;       // a request too far back to be true
+  std::size_t highest_ = 0;          // of all lines ever given
+  std::size_t acknowledged_ = 0;     // the highest that an ok was for
+  std::size_t careful_until_ = 0;    // the line from which the window may be used again
+  int unproven_ = 0;                 // exchanges in a row that were taken for granted
+  std::size_t asked_ = 0;            // the line last asked for,
+  int asked_times_ = 0;              // and how often
+  std::size_t far_back_ = 0;         // a request too far back to be true
+  std::size_t asked_behind_ = 0;     // the line behind which M105 was sent last
+  std::size_t proven_ = 0;           // the last one behind which M105 was answered
+  std::size_t doubted_until_ = 0;    // the line until which an ok may be one too many
+  bool temperatures_in_ok_ = false;  // as the printer answers M105
+  bool positions_unasked_ = false;   // it reports its position of its own (M154)
+  double busy_interval_s_ = 0;       // the longest
 };
 
 // The commands of a text of the profile.

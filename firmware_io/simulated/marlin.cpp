@@ -13,7 +13,6 @@ namespace packmerger::simulated {
 namespace {
 
 constexpr std::size_t kPlanner = 16;
-constexpr double kBusy_s = 2;
 constexpr double kReport_s = 1;
 
 }  // namespace
@@ -47,9 +46,15 @@ void Marlin::report_idle(double now_s) {
 }
 
 void Marlin::report_by_itself(double now_s) {
-  if (dead_ || now_s < next_auto_s_) return;
-  say(temperatures(now_s));
-  next_auto_s_ = now_s + pace_.line_s(report_every_s_);
+  if (dead_) return;
+  if (now_s >= next_auto_s_) {
+    say(temperatures(now_s));
+    next_auto_s_ = now_s + pace_.line_s(report_every_s_);
+  }
+  if (now_s >= next_position_s_) {
+    say(position());
+    next_position_s_ = now_s + pace_.line_s(positions_every_s_);
+  }
 }
 
 void Marlin::report_every(double seconds, double now_s) {
@@ -59,8 +64,9 @@ void Marlin::report_every(double seconds, double now_s) {
 
 double Marlin::next_event_s() const {
   if (dead_) return kNever;
-  if (!executing_) return traits_.idle_wait ? std::min(next_auto_s_, next_idle_s_) : next_auto_s_;
-  double next = std::min(next_busy_s_, next_auto_s_);
+  const double report_s = next_report_by_itself_s();
+  if (!executing_) return traits_.idle_wait ? std::min(report_s, next_idle_s_) : report_s;
+  double next = std::min(next_busy_s_, report_s);
   if (blocked_ == Blocked::kUntil || blocked_ == Blocked::kTool || blocked_ == Blocked::kBed)
     next = std::min(next, blocked_until_s_);
   if (blocked_ == Blocked::kTool || blocked_ == Blocked::kBed)
@@ -118,7 +124,7 @@ void Marlin::block(Blocked why, double now_s, double until_s) {
   executing_ = true;
   blocked_ = why;
   blocked_until_s_ = until_s;
-  next_busy_s_ = now_s + pace_.line_s(kBusy_s);
+  next_busy_s_ = now_s + pace_.line_s(busy_every_s_);
   next_report_s_ = now_s + kReport_s;
 }
 
@@ -154,18 +160,20 @@ bool Marlin::ask_again() {
 void Marlin::keep_alive(double now_s) {
   const bool heating = blocked_ == Blocked::kTool || blocked_ == Blocked::kBed;
   if (now_s >= next_busy_s_) {
-    if (traits_.busy)
+    if (traits_.busy && !(heating && traits_.heats_quietly))
       say(blocked_ == Blocked::kUser ? "echo:busy: paused for user" : "echo:busy: processing");
-    next_busy_s_ = now_s + pace_.line_s(kBusy_s);
+    next_busy_s_ = now_s + pace_.line_s(busy_every_s_);
   }
   if (heating && now_s >= next_report_s_) {
-    say(temperatures(now_s) + " W:?");
+    say(temperatures(now_s) + (traits_.heats_quietly ? "" : " W:?"));
     next_report_s_ = now_s + kReport_s;
   }
 }
 
 void Marlin::finish() {
   say(reply_ == "ok" && traits_.advanced_ok ? advanced_ok() : reply_);
+  constexpr std::size_t kDoubled = 5;
+  if (traits_.doubled_ok && ++oks_ % kDoubled == 0) say(reply_);
   reply_ = "ok";
   executing_ = false;
   skip_wait_ = false;

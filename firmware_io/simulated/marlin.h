@@ -1,6 +1,7 @@
 // The firmware of a simulated RepRap (Marlin), as simulator.h describes it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <deque>
@@ -17,6 +18,7 @@ class Marlin : public Firmware {
  public:
   explicit Marlin(Pace pace, MarlinTraits traits = {}) : pace_(pace), traits_(std::move(traits)) {
     if (traits_.reports_unasked) report_every(1, 0);
+    if (traits_.positions_unasked) positions_every_s_ = 1, next_position_s_ = 0;
   }
 
   void receive(std::string_view bytes, double now_s) override;
@@ -72,6 +74,8 @@ class Marlin : public Firmware {
   void plan(double seconds, double now_s);
   void kill(const std::string& why);
   std::string temperatures(double now_s) const;
+  std::string position() const;
+  double next_report_by_itself_s() const { return std::min(next_auto_s_, next_position_s_); }
 
   Pace pace_;
   MarlinTraits traits_;
@@ -99,6 +103,10 @@ class Marlin : public Firmware {
   bool asks_to_purge_ = false;
   double report_every_s_ = 0;  // M155
   double next_auto_s_ = kNever;
+  double positions_every_s_ = 0;  // M154
+  double next_position_s_ = kNever;
+  double busy_every_s_ = 2;  // M113
+  std::size_t oks_ = 0;
 
   // the machine
   std::deque<double> planned_ends_s_;

@@ -1,4 +1,5 @@
 // The simulated Marlin's machine: its commands, moves and heaters.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -29,6 +30,13 @@ std::string Marlin::temperatures(double now_s) const {
   std::snprintf(text, sizeof text, " T:%.2f /%.2f B:%.2f /%.2f @:0 B@:0",
                 tool_.temperature(now_s, pace_), tool_.target(), bed_.temperature(now_s, pace_),
                 bed_.target());
+  return text;
+}
+
+std::string Marlin::position() const {
+  char text[128];
+  std::snprintf(text, sizeof text, "X:%.2f Y:%.2f Z:%.2f E:%.2f Count X:0 Y:0 Z:0", position_[0],
+                position_[1], position_[2], position_[3]);
   return text;
 }
 
@@ -116,12 +124,12 @@ void Marlin::execute_report(const std::string& command, double now_s) {
   if (is(command, "M155") && traits_.autoreport)
     report_every(value(command, 'S').value_or(0), now_s);
   if (is(command, "M27")) say("Not SD printing");
-  if (is(command, "M114")) {
-    char text[128];
-    std::snprintf(text, sizeof text, "X:%.2f Y:%.2f Z:%.2f E:%.2f Count X:0 Y:0 Z:0", position_[0],
-                  position_[1], position_[2], position_[3]);
-    say(text);
+  if (is(command, "M154")) {
+    positions_every_s_ = value(command, 'S').value_or(0);
+    next_position_s_ = positions_every_s_ > 0 ? now_s + pace_.line_s(positions_every_s_) : kNever;
   }
+  if (is(command, "M113")) busy_every_s_ = std::max(value(command, 'S').value_or(2), 1.0);
+  if (is(command, "M114")) say(position());
   if (is(command, "M115")) {
     say("FIRMWARE_NAME:Marlin " + traits_.version +
         " (simulated) PROTOCOL_VERSION:1.0 MACHINE_TYPE:PackMerger EXTRUDER_COUNT:1");

@@ -26,6 +26,9 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"resend_ok", &T::resend_ok},
                                  {"resend_short", &T::resend_short},
                                  {"filament_change", &T::filament_change},
+                                 {"positions_unasked", &T::positions_unasked},
+                                 {"heats_quietly", &T::heats_quietly},
+                                 {"doubled_ok", &T::doubled_ok},
                                  {"comment_blank", &T::comment_blank}};
   return names;
 }

@@ -11,22 +11,25 @@ namespace packmerger::simulated {
 // As given here: Marlin 2.1 with its emergency parser and host prompts.
 struct MarlinTraits {
   std::string version = "2.1.2";
-  bool doubled_silent = true;    // a line it has already gets no answer; otherwise Resend
-  bool rx_overflow = false;      // what does not fit its receive ring (128 bytes) is lost
-  bool emergency_parser = true;  // M108, M112, M410 and M876 act while they are received
-  bool prompts = true;           // asks its user through the host
-  bool busy = true;              // says "busy" every two seconds while a command blocks
-  bool crlf = true;              // some lines end "\r\n"
-  bool m110_anywhere = true;     // a numbered line with "M110" anywhere sets the line count
-  bool advanced_ok = false;      // "ok N2 P14 B3"
-  bool idle_wait = false;        // says "wait" every second while it has nothing to do
-  bool autoreport = true;        // tells its temperatures of its own once asked to (M155)
-  bool reports_unasked = false;  // does so every second from its start
-  bool resend_error = true;      // an "Error:" line before "Resend"
-  bool resend_ok = true;         // an "ok" behind it
-  bool resend_short = false;     // "rs N3" for "Resend: 3"
-  bool filament_change = true;   // knows M600, and asks its user twice; else an unknown command
-  bool comment_blank = false;    // "// action:", "// Unknown command:", as Klipper writes them
+  bool doubled_silent = true;      // a line it has already gets no answer; otherwise Resend
+  bool rx_overflow = false;        // what does not fit its receive ring (128 bytes) is lost
+  bool emergency_parser = true;    // M108, M112, M410 and M876 act while they are received
+  bool prompts = true;             // asks its user through the host
+  bool busy = true;                // says "busy" every two seconds while a command blocks
+  bool crlf = true;                // some lines end "\r\n"
+  bool m110_anywhere = true;       // a numbered line with "M110" anywhere sets the line count
+  bool advanced_ok = false;        // "ok N2 P14 B3"
+  bool idle_wait = false;          // says "wait" every second while it has nothing to do
+  bool autoreport = true;          // tells its temperatures of its own once asked to (M155)
+  bool reports_unasked = false;    // does so every second from its start
+  bool resend_error = true;        // an "Error:" line before "Resend"
+  bool resend_ok = true;           // an "ok" behind it
+  bool resend_short = false;       // "rs N3" for "Resend: 3"
+  bool filament_change = true;     // knows M600, and asks its user twice; else an unknown command
+  bool positions_unasked = false;  // tells its position every second from its start, as by M154 S1
+  bool heats_quietly = false;      // waits for heat with neither "busy" nor "W:", as Klipper does
+  bool doubled_ok = false;         // every fifth ok comes twice
+  bool comment_blank = false;      // "// action:", "// Unknown command:", as Klipper writes them
 };
 
 MarlinTraits marlin_1_1();

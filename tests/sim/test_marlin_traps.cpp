@@ -246,6 +246,28 @@ TEST(MarlinTraps, ReportsTemperaturesUnasked) {
   EXPECT_EQ(wire.says("", 3.5), "");
 }
 
+TEST(MarlinTraps, TellsItsPositionUnasked) {
+  Marlin marlin(kRealTime, with("positions_unasked"));
+  Wire wire(marlin);
+  EXPECT_GE(count(wire.says("", 3.5), "X:0.00 Y:0.00"), 3U);
+  EXPECT_EQ(wire.says("M154 S0\n"), "ok\n");
+  EXPECT_EQ(wire.says("", 3.5), "");
+}
+
+TEST(MarlinTraps, HeatsWithoutAnySignButTemperatures) {
+  Marlin marlin(kRealTime, with("heats_quietly"));
+  Wire wire(marlin);
+  const std::string said = wire.says("M190 S60\n", 10);
+  EXPECT_GE(count(said, " B:"), 8U);
+  EXPECT_THAT(said, Not(HasSubstr("W:")));
+  EXPECT_THAT(said, Not(HasSubstr("busy")));
+}
+
+TEST(MarlinTraps, EveryFifthOkComesTwice) {
+  Marlin marlin(kRealTime, with("doubled_ok"));
+  EXPECT_EQ(count(Wire(marlin).says("M82\nM82\nM82\nM82\nM82\n"), "ok\n"), 6U);
+}
+
 TEST(MarlinTraps, WhatIsBeyond95BytesIsDroppedAndTheLineAskedForAgain) {
   Marlin marlin(kRealTime);
   Wire wire(marlin);

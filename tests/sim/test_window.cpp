@@ -27,7 +27,8 @@ class WeighingPort : public Port {
         heard_ += c;
         continue;
       }
-      if (heard_.starts_with("ok") && !unanswered_.empty()) unanswered_.pop_front();
+      if (heard_.starts_with("ok") && !heard_.starts_with("ok T") && !unanswered_.empty())
+        unanswered_.pop_front();
       heard_.clear();
     }
     return count;
@@ -38,7 +39,8 @@ class WeighingPort : public Port {
     for (const char c : bytes.substr(0, count)) {
       said_ += c;
       if (c != '\n') continue;
-      if (said_ != "\n") weigh();  // an empty line gets no answer
+      // An empty line gets no answer; M105, now and then, has room in the ring beside the window.
+      if (said_ != "\n" && said_ != "M105\n") weigh();
       said_.clear();
     }
     return count;

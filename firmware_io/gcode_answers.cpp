@@ -1,0 +1,173 @@
+// What the printer's answers are for, and how it is known that it is still there.
+#include <algorithm>
+#include <utility>
+
+#include "firmware_io/gcode_stream.h"
+
+namespace packmerger {
+
+namespace {
+
+constexpr int kMaxSameResend = 10;
+constexpr int kTriesPerTimeout = 5;
+// A request for a line further back than this is noise, or the printer was reset.
+constexpr std::size_t kSlack = 10;
+// The ok that belongs to a Resend follows at once; some firmwares send none.
+constexpr double kResendWait_s = 0.5;
+// Marlin says "busy" every two seconds unless it is told otherwise (M113).
+constexpr double kBusyPatience_s = 6;
+constexpr double kBusiesMissed = 3;
+// A command that blocks longer than usual without a word is given this many time-outs.
+constexpr double kLongFactor = 5;
+// After so many lines M105 proves that no ok was one too many; sooner where some were.
+constexpr std::size_t kLinesPerProof = 100;
+constexpr std::size_t kLinesPerProofInDoubt = 4;
+constexpr std::size_t kDoubtedLines = 200;
+
+}  // namespace
+
+// The one of unanswered_ that an ok is for; its size: none, the ok is one too many. Where the
+// printer names the line (ADVANCED_OK) that decides, and where it answers M105 with temperatures,
+// nothing else answers M105 and such an answer is for nothing else.
+std::size_t GcodeStream::answered_by(const GcodeReply& ok) const {
+  const auto index_of = [&](const auto& is_it) {
+    const auto found = std::find_if(unanswered_.begin(), unanswered_.end(), is_it);
+    return static_cast<std::size_t>(found - unanswered_.begin());
+  };
+  if (ok.has_temperature) return index_of([](const Given& g) { return g.asks_temperatures; });
+  if (ok.number > 0 && ok.number <= last_)
+    return index_of([&](const Given& g) { return g.number == ok.number; });
+  if (unanswered_.empty() || (unanswered_.front().asks_temperatures && temperatures_in_ok_))
+    return unanswered_.size();
+  return 0;
+}
+
+void GcodeStream::handle_ok(const GcodeReply& reply) {
+  temperatures_in_ok_ = temperatures_in_ok_ || reply.has_temperature;
+  const std::size_t answered = answered_by(reply);
+  if (answered == unanswered_.size()) {
+    // One too many opens nothing. A request may have been stale, for instance the answer to a
+    // doubled line: the line itself was taken.
+    if (unanswered_.empty() && resend_)
+      resend_.reset();
+    else
+      doubted_until_ = last_ + kDoubtedLines;
+    return;
+  }
+  const Given given = unanswered_[answered];
+  const auto behind = unanswered_.begin() + static_cast<std::ptrdiff_t>(answered);
+  const bool lost =
+      std::any_of(unanswered_.begin(), behind, [](const Given& g) { return g.number > 0; });
+  unanswered_.erase(unanswered_.begin(), behind + 1);
+  if (given.asks_temperatures) {
+    // Answers come in order, so whatever was still owed got lost.
+    taken_for_granted_ = lost && !resend_;
+    unanswered_.clear();
+    m105_behind_ = false;
+    proven_ = last_;
+  }
+  if (resend_)
+    resend_->due_s = channel_.now_s() + kSettle_s;
+  else if (given.number > 0) {
+    acknowledged_ = std::max(acknowledged_, given.number);
+    tell_done(given.number + 1);
+  }
+}
+
+void GcodeStream::handle_resend(std::size_t asked) {
+  std::size_t next = asked;
+  if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
+  // A printer that was reset asks for line 1; in the first lines that would seem to be near.
+  if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 0))) {
+    if (asked == far_back_)
+      fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
+               " after line " + std::to_string(last_) + "): it was probably reset",
+           "Clear the bed and print the job again; check the printer's power supply.");
+    far_back_ = asked;
+    next = last_;
+  }
+  // Every line that was on its way behind the one it lacks asks for that one again.
+  if (!resend_ || next != asked_) asked_times_ = next == asked_ ? asked_times_ + 1 : 1;
+  asked_ = next;
+  if (asked_times_ >= kMaxSameResend)
+    fail(
+        "The printer asked ten times for line " + std::to_string(next) + " (" + command(next) + ")",
+        "Use a shorter or better shielded cable, and check that link.baud fits the printer.");
+  resend_ = Resend{next, channel_.now_s() + kResendWait_s};
+}
+
+// Never by what comes unasked: reports of positions or temperatures go on for ever when the answer
+// to the line got lost.
+bool GcodeStream::proves_life(const GcodeReply& reply) {
+  const bool waits_for_heat = reply.text.find(" W:") != std::string::npos;
+  if (reply.kind == GcodeReplyKind::kTemperature)
+    return heat_.comes_nearer(reply.heaters) || waits_for_heat;
+  return reply.kind == GcodeReplyKind::kOk || reply.kind == GcodeReplyKind::kResend ||
+         reply.kind == GcodeReplyKind::kBusy;
+}
+
+void GcodeStream::handle_busy(const GcodeReply& reply) {
+  const double now = channel_.now_s();
+  busy_seen_ = true;
+  busy_interval_s_ = std::max(busy_interval_s_, now - std::exchange(busy_at_s_, now));
+  if (reply.waiting && !cancelling_) reporter_.state(PrintState::kWaiting, prompt_, choices_);
+}
+
+void GcodeStream::watch_silence() {
+  const double now = channel_.now_s();
+  const bool stands_still = paused_ && !parks_ && !between_;
+  if (stands_still) alive_at_s_ = now;  // for as long as the machine likes
+  const bool may_be_long =
+      is_long(command(last_)) && !busy_seen_ && !cancelling_ && complaint_.empty();
+  const double limit = std::max(options_.timeout_s * (may_be_long ? kLongFactor : 1.0),
+                                kBusiesMissed * busy_interval_s_);
+  if (now - alive_at_s_ >= limit) fail_in_silence();
+  double patience = limit / kTriesPerTimeout;
+  if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
+  if (now - std::max(alive_at_s_, attempt_at_s_) >= std::min(patience * patience_factor_, limit))
+    recover();
+}
+
+// An empty line ends a half line that lost bytes left in the printer: Marlin then asks for the line
+// again. M105 is answered by a printer that is alive, and only behind everything sent before. The
+// same line is never just repeated: Marlin 2.1 answers a line that it already has with silence. A
+// printer that is alive meanwhile reads nothing yet, so it is asked ever more seldom.
+void GcodeStream::recover() {
+  if (attempt_at_s_ > given_at_s_ && alive_at_s_ >= attempt_at_s_) patience_factor_ *= 2;
+  channel_.send("");
+  ask_for_proof();
+  attempt_at_s_ = channel_.now_s();
+}
+
+// The answer to M105 comes behind all others: what was owed before it and did not come got lost,
+// and an ok that comes before it, though nothing else is owed, is one too many.
+void GcodeStream::ask_for_proof() {
+  send_raw("M105");
+  unanswered_.back().asks_temperatures = true;
+  m105_behind_ = true;
+  asked_behind_ = last_;
+}
+
+bool GcodeStream::wants_proof() const {
+  if (asked_behind_ == last_) return false;
+  const std::size_t behind_program = commands_.size() + 1;
+  if (last_ >= behind_program)
+    // once the position did not come, or where it comes unasked
+    return last_ > behind_program + 1 || positions_unasked_;
+  const bool doubted = last_ < doubted_until_;
+  return !blocks(command(last_)) &&
+         last_ >= proven_ + (doubted ? kLinesPerProofInDoubt : kLinesPerProof);
+}
+
+// Of a printer that does not tell them by itself, and to prove where it is.
+void GcodeStream::ask_temperatures() {
+  constexpr double kPoll_s = 5;
+  if (resend_ || m105_behind_ || unanswered_.size() >= kMostLines) return;
+  const bool polls = !abilities_.autoreport && !cancelling_ &&
+                     channel_.now_s() - asked_temperatures_at_s_ >= kPoll_s;
+  if (!polls && !wants_proof()) return;
+  asked_temperatures_at_s_ = channel_.now_s();
+  ask_for_proof();
+}
+
+}  // namespace packmerger
