@@ -35,8 +35,8 @@ std::size_t text_length(std::string_view bytes, std::size_t fixed) {
 // Lengths with the action's code, of the actions that Replicators since 2012 know. 0: unknown.
 std::size_t fixed_length(std::uint8_t action) {
   switch (action) {
-    case 0x83:  // find axes' minimum
-    case 0x84:  // find axes' maximum
+    case kFindMinimum:
+    case kFindMaximum:
       return 8;
     case 0x85:  // delay
     case 0x94:  // wait for a button
@@ -50,7 +50,7 @@ std::size_t fixed_length(std::uint8_t action) {
     case 0x86:  // change tool
     case 0x89:  // enable or disable axes
     case 0x8F:  // store home position
-    case 0x90:  // recall home position
+    case kRecallHome:
     case 0x97:  // song
     case kFactoryReset:
     case kBuildEnd:
@@ -59,14 +59,14 @@ std::size_t fixed_length(std::uint8_t action) {
     case 0x91:  // motor current
     case 0x96:  // build percentage
       return 3;
-    case 0x8B:  // move to a point
+    case kMoveTo:
       return 25;
-    case 0x8C:  // set position
+    case kSetPosition:
     case 0x9D:  // x3g version
       return 21;
-    case 0x8E:  // move, by time
+    case kMoveIn:
       return 26;
-    case 0x9B:  // move, by rate
+    case kMoveAlong:
       return 32;
     default:
       return 0;

@@ -24,6 +24,7 @@ enum Query : std::uint8_t {
   kPause = 0x08,  // and go on: it toggles
   kToolQuery = 0x0A,
   kIsFinished = 0x0B,
+  kPosition = 0x15,
   kBoardStatus = 0x17,
   kBuildStatistics = 0x18,
   kAdvancedVersion = 0x1B
@@ -31,9 +32,14 @@ enum Query : std::uint8_t {
 
 // Actions that a link must know by name; all are buffered and executed in order.
 enum Action : std::uint8_t {
+  kFindMinimum = 0x83,
+  kFindMaximum = 0x84,
   kDelay = 0x85,
   kWaitForTool = 0x87,
+  kMoveTo = 0x8B,  // at a rate
+  kSetPosition = 0x8C,
   kWaitForPlatform = 0x8D,
+  kRecallHome = 0x90,
   kFactoryReset = 0x98,
   kBuildStart = 0x99,
   kBuildEnd = 0x9A,
@@ -46,7 +52,7 @@ enum Response : std::uint8_t {
   kOk = 0x81,
   kBufferFull = 0x82,  // the action was dropped whole
   kChecksumMismatch = 0x83,
-  kTooLong = 0x84,
+  kTooLong = 0x84,  // no packet of ours is: its length was damaged on the way
   kUnknownQuery = 0x85,
   kCancelled = 0x89,  // at the printer's panel
   kBuildingFromCard = 0x8A,

@@ -24,7 +24,8 @@ std::string hex(std::uint8_t value) {
 }
 
 bool worth_repeating(std::uint8_t code) {
-  return code == kChecksumMismatch || code == kPacketTimeout || code == kGenericError;
+  return code == kChecksumMismatch || code == kPacketTimeout || code == kGenericError ||
+         code == kTooLong;
 }
 
 }  // namespace
@@ -41,8 +42,12 @@ bool Channel::listen(double timeout_s) {
 
 void Channel::notice_unexpected() {
   while (const auto reply = reader_.next())
-    if (reply->intact && reply->payload.size() == 1 && reply->code() != kGenericError)
-      heard_too_much_ = true;
+    if (reply->intact) note_surplus(*reply);
+}
+
+// Refusals too many are harmless.
+void Channel::note_surplus(const Reply& reply) {
+  if (reply.payload.size() == 1 && reply.code() == kOk) ++surplus_;
 }
 
 void Channel::hear_strays() {
@@ -64,8 +69,8 @@ Channel::Outcome Channel::exchange(std::string_view payload, const Expected& exp
       } else if (expected(*reply)) {
         reply_payload = std::move(reply->payload);
         return Outcome::kReply;
-      } else if (reply->payload.size() == 1) {
-        heard_too_much_ = true;
+      } else {
+        note_surplus(*reply);
       }
     }
     const double left = sent_at + reply_wait_s_ - now_s();
@@ -142,6 +147,15 @@ std::string Channel::firmware_name(std::uint32_t version) {
 std::uint32_t Channel::free_buffer() { return read_integer(query(std::string(1, kFreeBuffer), 4)); }
 
 bool Channel::is_finished() { return query(std::string(1, kIsFinished), 1)[0] != 0; }
+
+// Five axes' steps, and the end stops.
+Steps Channel::position() {
+  const std::string reply = query(std::string(1, kPosition), 4 * kAxes + 2);
+  Steps steps{};
+  for (std::size_t i = 0; i < kAxes; ++i)
+    steps[i] = static_cast<std::int32_t>(read_integer(std::string_view(reply).substr(4 * i, 4)));
+  return steps;
+}
 
 std::uint8_t Channel::board_status() {
   return static_cast<std::uint8_t>(query(std::string(1, kBoardStatus), 1)[0]);

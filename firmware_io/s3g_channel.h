@@ -10,6 +10,7 @@
 
 #include "firmware_io/port.h"
 #include "firmware_io/s3g.h"
+#include "firmware_io/s3g_axes.h"
 
 namespace packmerger::s3g {
 
@@ -22,7 +23,7 @@ enum class Verdict {
 
 struct Statistics {
   BuildState state = BuildState::kNone;
-  std::uint32_t actions = 0;  // executed since the build start, it not counted
+  std::uint32_t actions = 0;  // executed since the build start, it not counted; 0: not counted
 };
 
 class Channel {
@@ -40,7 +41,9 @@ class Channel {
   // "Sailfish 7.8", "MakerBot 7.5"; version: as the version query gave it.
   std::string firmware_name(std::uint32_t version);
   std::uint32_t free_buffer();
+  // Its buffer is empty. Up to fifteen moves may still be on their way.
   bool is_finished();
+  Steps position();
   std::uint8_t board_status();
   Statistics statistics();
   // tool: index; query_code: 0x02 or 0x20 (tool's temperature, target), 0x1E or 0x21 (platform's).
@@ -52,9 +55,10 @@ class Channel {
   // Takes what has come without being asked for.
   void hear_strays();
 
-  // True when an answer came that nothing was waiting for: a packet may have been taken twice.
-  bool heard_too_much() const { return heard_too_much_; }
-  void forget_too_much() { heard_too_much_ = false; }
+  // How often it was heard that an action was taken although nothing waited for an answer: one that
+  // came late, or that of a packet taken twice.
+  int surplus() const { return surplus_; }
+  int take_surplus() { return std::exchange(surplus_, 0); }
 
   // True, once, when the answer to a query got lost: it may have told the end of the build.
   bool take_missed() { return std::exchange(missed_, false); }
@@ -78,12 +82,13 @@ class Channel {
   Outcome exchange(std::string_view payload, const Expected& expected, std::string& reply);
   bool listen(double timeout_s);
   void notice_unexpected();
+  void note_surplus(const Reply& reply);
   void throw_if_over(std::uint8_t code);
 
   Port& port_;
   double reply_wait_s_;
   ReplyReader reader_;
-  bool heard_too_much_ = false;
+  int surplus_ = 0;
   bool missed_ = false;
   bool tolerate_cancelled_ = false;
   bool may_abort_ = true;

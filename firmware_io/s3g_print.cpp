@@ -10,7 +10,7 @@ namespace packmerger::s3g {
 namespace {
 
 constexpr int kMaxRejected = 5;
-constexpr double kWatch_s = 1;
+constexpr double kDisturbed_s = 0.5;  // more than the time-out of a packet that did not come whole
 constexpr std::uint8_t kStatusBusyAlone = (1U << 3) | (1U << 2);  // with a script of its own
 
 const char* const kPrintAgain = "Clear the bed and print the job again.";
@@ -24,13 +24,6 @@ std::uint8_t code_of(std::string_view action) { return static_cast<std::uint8_t>
 bool is_building(BuildState state) {
   return state == BuildState::kRunning || state == BuildState::kPaused ||
          state == BuildState::kCancelling;
-}
-
-// Short waits first, so that a quick printer is not held up, then longer ones.
-double next_wait(double& wait_s, double longest_s) {
-  const double now = wait_s;
-  wait_s = std::min(wait_s * 1.2, longest_s);
-  return now;
 }
 
 }  // namespace
@@ -65,9 +58,9 @@ void Print::connect(double boot_wait_s, const std::string& machine) {
   if (busy)
     throw Error(Fault::kBusy, "The printer at " + channel_.name() + " is printing already",
                 "Wait until that print is done, or cancel it at the printer.");
-  capacity_ = channel_.free_buffer();
+  if (channel_.is_finished()) buffer_.emptied(channel_.free_buffer());
   channel_.tolerate_cancelled(false);
-  channel_.forget_too_much();
+  channel_.take_surplus();
 }
 
 void Print::run(const std::vector<std::string_view>& actions,
@@ -88,21 +81,22 @@ void Print::send(std::size_t index) {
   int rejected = 0;
   while (true) {
     obey();
-    if (channel_.take_missed() || channel_.now_s() - watched_at_s_ >= kWatch_s) watch();
+    if (channel_.take_missed())
+      watch();
+    else
+      watch_when_due();
     channel_.hear_strays();
-    if (channel_.heard_too_much()) check_nothing_taken_twice();
-    switch (channel_.try_action(action)) {
-      case Verdict::kAccepted:
-        return note_accepted(index);
-      case Verdict::kFull:
-        wait_for_room(action.size());
-        continue;
-      case Verdict::kUnclear:
-        if (was_taken(index)) return note_accepted(index);
-        break;
-      case Verdict::kRejected:
-        break;
+    if (channel_.surplus() > 0) check_nothing_taken_twice();
+    Verdict verdict = channel_.try_action(action);
+    if (verdict == Verdict::kAccepted) return note_accepted(index);
+    if (verdict == Verdict::kFull) {
+      wait_for_room(action.size());
+      continue;
     }
+    // What else the disturbance set off is heard before anything is sent again.
+    channel_.pause(kDisturbed_s);
+    if (channel_.surplus() > 0) verdict = Verdict::kUnclear;
+    if (verdict == Verdict::kUnclear && was_taken(index)) return note_accepted(index);
     if (++rejected >= kMaxRejected)
       fail("The printer did not understand the same command five times",
            "Use a shorter or better shielded cable, then print the job again.");
@@ -110,7 +104,11 @@ void Print::send(std::size_t index) {
 }
 
 void Print::note_accepted(std::size_t index) {
-  const std::uint8_t code = code_of((*actions_)[index]);
+  const std::string_view action = (*actions_)[index];
+  const std::uint8_t code = code_of(action);
+  buffer_.add(action.size());
+  axes_.apply(action);
+  accepted_ = index + 1;
   ++after_start_;
   if (code == kBuildStart) {
     started_ = true;
@@ -124,41 +122,12 @@ void Print::note_accepted(std::size_t index) {
 // Polls until the printer's buffer has room.
 void Print::wait_for_room(std::size_t size) {
   double wait_s = 0.005;
-  while (channel_.free_buffer() < size) {
-    channel_.pause(next_wait(wait_s, kSlice_s));
-    obey();
-    if (channel_.now_s() - watched_at_s_ >= kWatch_s) watch();
+  while (true) {
+    const std::uint32_t free_bytes = channel_.free_buffer();
+    buffer_.observe(free_bytes);
+    if (free_bytes >= size) return;
+    wait(wait_s, kSlice_s);
   }
-}
-
-// Once the buffer is empty, the printer's own count tells what it took.
-Statistics Print::drained_statistics() {
-  wait_for_room(capacity_);
-  return channel_.statistics();
-}
-
-// An answer got lost. Sending the action again might execute it twice, so the printer is asked.
-bool Print::was_taken(std::size_t index) {
-  const std::uint8_t code = code_of((*actions_)[index]);
-  const Statistics statistics = drained_statistics();
-  if (code == kBuildStart) return statistics.state == BuildState::kRunning;
-  if (code != kBuildEnd) judge(statistics);
-  // With an answer too many besides, the count proves nothing.
-  if (started_ && !ended_ && !channel_.heard_too_much()) {
-    if (code == kBuildEnd && statistics.state == BuildState::kFinished) return true;
-    if (statistics.actions == after_start_) return false;
-    if (statistics.actions == after_start_ + 1) return true;
-  }
-  fail("An answer of the printer got lost, and its count does not tell which commands it has",
-       "Use a shorter or better shielded cable. " + std::string(kPrintAgain));
-}
-
-void Print::check_nothing_taken_twice() {
-  channel_.forget_too_much();
-  if (!started_) return;
-  if (drained_statistics().actions != after_start_)
-    fail("The printer has executed a command twice or not at all",
-         "Use a shorter or better shielded cable. " + std::string(kPrintAgain));
 }
 
 void Print::finish() {
@@ -166,7 +135,7 @@ void Print::finish() {
   constexpr double kPatience_s = 5;
   double busy_at = channel_.now_s();
   while (true) {
-    const bool idle = channel_.is_finished() && channel_.free_buffer() == capacity_;
+    const bool idle = channel_.is_finished();
     const Statistics statistics = channel_.statistics();
     judge(statistics);
     if (idle && statistics.state == BuildState::kFinished) break;
@@ -174,11 +143,17 @@ void Print::finish() {
     if (!idle || paused) busy_at = channel_.now_s();
     if (channel_.now_s() - busy_at > kPatience_s)
       fail("The printer has stopped without finishing its build", kPrintAgain);
-    obey();
-    if (channel_.now_s() - watched_at_s_ >= kWatch_s) watch();
-    channel_.pause(next_wait(wait_s, 2 * kSlice_s));
+    wait(wait_s, 2 * kSlice_s);
   }
-  if (channel_.heard_too_much()) check_nothing_taken_twice();
+  if (channel_.surplus() > 0) check_nothing_taken_twice();
+}
+
+// Short waits first, so that a quick printer is not held up, then longer ones.
+void Print::wait(double& wait_s, double longest_s) {
+  channel_.pause(wait_s);
+  wait_s = std::min(wait_s * 1.2, longest_s);
+  obey();
+  watch_when_due();
 }
 
 void Print::obey() {
@@ -219,7 +194,7 @@ void Print::cancel() {
   channel_.query(std::string(1, kAbort), 0);
   constexpr double kPatience_s = 10;
   const double end = channel_.now_s() + kPatience_s;
-  while (is_building(channel_.statistics().state) || channel_.free_buffer() < capacity_) {
+  while (is_building(channel_.statistics().state) || !channel_.is_finished()) {
     if (channel_.now_s() > end)
       fail("The printer was told to cancel but is still building",
            "Cancel at the printer's panel, or switch it off.");

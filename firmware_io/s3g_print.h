@@ -11,6 +11,8 @@
 
 #include "firmware_io/conversation.h"
 #include "firmware_io/print_state.h"
+#include "firmware_io/s3g_axes.h"
+#include "firmware_io/s3g_buffer.h"
 #include "firmware_io/s3g_channel.h"
 
 namespace packmerger::s3g {
@@ -36,18 +38,28 @@ class Print {
  private:
   void send(std::size_t index);
   void note_accepted(std::size_t index);
+  void wait_for_room(std::size_t size);
+  void finish();
+
   bool was_taken(std::size_t index);
   void check_nothing_taken_twice();
-  void wait_for_room(std::size_t size);
-  Statistics drained_statistics();
-  void finish();
+  std::optional<bool> has_taken(std::string_view action);
+  std::optional<bool> buffer_tells(std::size_t length);
+  std::optional<bool> build_tells(std::uint8_t code, BuildState state) const;
+  std::optional<bool> count_tells(std::uint32_t actions);
+  std::optional<bool> position_tells(std::string_view action);
+  Steps position_at_rest();
+
   void obey();
   void cancel();
   [[noreturn]] void stop_at_once();
   void set_paused(bool wanted);
+  void wait(double& wait_s, double longest_s);
   void watch();
+  void watch_when_due();
   void judge(const Statistics& statistics);
-  void show(const Statistics& statistics, std::uint8_t board_status);
+  void show(BuildState state, std::uint8_t board_status);
+  std::string_view current_action();
   std::string heating_text(std::string_view action);
   void note_heaters();
   void tell_heaters();
@@ -57,11 +69,15 @@ class Print {
   PrintControl& control_;
   const std::vector<std::string_view>* actions_ = nullptr;
 
-  std::uint32_t capacity_ = 0;     // of the printer's buffer, bytes
+  Buffer buffer_;                  // with all that was accepted
+  Axes axes_;                      // after all that was accepted
+  std::size_t accepted_ = 0;       // actions
+  bool counts_ = false;            // the printer counts what it executes
   std::size_t start_ = 0;          // index of the build start that was accepted last
   std::uint32_t after_start_ = 0;  // actions accepted since
   bool started_ = false;           // a build start was accepted
   bool ended_ = false;             // a build end was accepted
+  bool may_have_ended_ = false;    // the answer to one got lost
   bool seen_running_ = false;
   std::optional<bool> pause_wanted_;  // asked for, until the build has begun
   bool may_abort_ = true;

@@ -23,11 +23,16 @@ bool waits_for_heat(std::string_view action) {
 
 }  // namespace
 
+void Print::watch_when_due() {
+  constexpr double kInterval_s = 1;
+  if (channel_.now_s() - watched_at_s_ >= kInterval_s) watch();
+}
+
 // Asks the printer how its build stands.
 void Print::watch() {
   watched_at_s_ = channel_.now_s();
   // An empty buffer: the build start was executed.
-  if (started_ && !seen_running_) seen_running_ = channel_.free_buffer() == capacity_;
+  if (started_ && !seen_running_) seen_running_ = channel_.is_finished();
   const Statistics statistics = channel_.statistics();
   const std::uint8_t board_status = channel_.board_status();
   if ((board_status & kStatusHeatShutdown) != 0) {
@@ -37,7 +42,7 @@ void Print::watch() {
   }
   judge(statistics);
   tell_heaters();
-  show(statistics, board_status);
+  show(statistics.state, board_status);
 }
 
 void Print::judge(const Statistics& statistics) {
@@ -51,21 +56,26 @@ void Print::judge(const Statistics& statistics) {
   if (reset)
     fail("The printer was reset in the middle of the print",
          "Check the printer's power supply. " + std::string(kPrintAgain));
-  if (statistics.state == BuildState::kFinished && !ended_)
+  if (statistics.state == BuildState::kFinished && !ended_ && !may_have_ended_)
     fail("The printer ended its build before the program was through", kPrintAgain);
 }
 
-void Print::show(const Statistics& statistics, std::uint8_t board_status) {
-  if (statistics.state == BuildState::kPaused) return reporter_.state(PrintState::kPaused);
+void Print::show(BuildState state, std::uint8_t board_status) {
+  if (state == BuildState::kPaused) return reporter_.state(PrintState::kPaused);
   if ((board_status & kStatusWaitsForButton) != 0)
     return reporter_.state(PrintState::kWaiting, "Press the button at the printer");
-  const std::size_t current = start_ + statistics.actions;
-  const bool heating = statistics.state == BuildState::kRunning && current < actions_->size() &&
-                       waits_for_heat((*actions_)[current]);
-  if (heating)
-    reporter_.state(PrintState::kHeating, heating_text((*actions_)[current]));
+  const std::string_view current = current_action();
+  if (state == BuildState::kRunning && !current.empty() && waits_for_heat(current))
+    reporter_.state(PrintState::kHeating, heating_text(current));
   else
     reporter_.state(PrintState::kPrinting);
+}
+
+// The one that left the buffer last; empty where that is not known.
+std::string_view Print::current_action() {
+  const auto waiting = buffer_.actions(channel_.free_buffer());
+  if (!waiting || *waiting >= accepted_) return {};
+  return (*actions_)[accepted_ - *waiting - 1];
 }
 
 std::string Print::heating_text(std::string_view action) {

@@ -69,7 +69,7 @@ void Replicator::advance(double now_s) {
 void Replicator::clear() {
   queue_.clear();
   queued_bytes_ = 0;
-  busy_until_s_ = 0;
+  busy_until_s_ = homing_until_s_ = 0;
   paused_ = waits_for_button_ = false;
 }
 
@@ -135,7 +135,9 @@ void Replicator::execute(const Bytes& sent, double now_s) {
   switch (action[0]) {
     case 0x83:
     case 0x84:
-      return wait(kHoming_s, now_s);
+      wait(kHoming_s, now_s);
+      homing_until_s_ = busy_until_s_;
+      return;
     case 0x85:
       return wait(u32(action, 1) / 1000.0, now_s);
     case 0x87:
@@ -184,9 +186,15 @@ void Replicator::execute_tool_action(const Bytes& action, double now_s) {
   if (action[2] == 0x1F) platform_.set_target(u16(action, 4), now_s);
 }
 
-// Moves, and the setting of the position. Durations are those that the action itself states.
+// Moves, and the setting of the position, which the position query shows with the next move.
+// Durations are those that the action itself states.
 void Replicator::execute_move(const Bytes& action, double now_s) {
   const unsigned relative = action[0] == 0x9B || action[0] == 0x8E ? action[25] : 0;
+  float distance_mm = 0;
+  const std::uint32_t bits = u32(action, 26);
+  std::memcpy(&distance_mm, &bits, sizeof bits);
+  if (action[0] == 0x9B && distance_mm == 0) return;  // passed over
+  const std::array<std::int32_t, 5> from = position_;
   double longest = 0;
   for (std::size_t axis = 0; axis < position_.size(); ++axis) {
     const auto steps = static_cast<std::int32_t>(u32(action, 1 + 4 * axis));
@@ -195,18 +203,18 @@ void Replicator::execute_move(const Bytes& action, double now_s) {
     longest = std::max(longest, std::abs(way));
     position_[axis] = static_cast<std::int32_t>(is_relative ? position_[axis] + way : steps);
   }
-  if (action[0] == 0x8E) wait(u32(action, 21) / 1e6, now_s);
-  if (action[0] == 0x8B) wait(longest * u32(action, 21) / 1e6, now_s);
-  if (action[0] != 0x9B) return;
-  float distance_mm = 0;
-  const std::uint32_t bits = u32(action, 26);
-  std::memcpy(&distance_mm, &bits, sizeof bits);
+  if (action[0] == 0x8C) return;
   const double speed_mm_s = u16(action, 30) / 64.0;
   const double rate = u32(action, 21);
-  if (speed_mm_s > 0)
+  if (action[0] == 0x8E)
+    wait(rate / 1e6, now_s);
+  else if (action[0] == 0x8B)
+    wait(longest * rate / 1e6, now_s);
+  else if (speed_mm_s > 0)
     wait(std::abs(distance_mm) / speed_mm_s, now_s);
   else if (rate > 0)
     wait(longest / rate, now_s);
+  if (longest > 0) move_ = {from, position_, now_s, busy_until_s_};
 }
 
 void Replicator::begin_build(const Bytes& action) {

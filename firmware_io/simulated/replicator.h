@@ -30,6 +30,12 @@ class Replicator : public Firmware {
 
  private:
   enum State : std::uint8_t { kNone, kRunning, kFinished, kPausedState, kCancelled };
+  struct Move {
+    std::array<std::int32_t, 5> from{};
+    std::array<std::int32_t, 5> to{};
+    double since_s = 0;
+    double until_s = 0;
+  };
   enum class Expect { kHeader, kLength, kPayload, kChecksum };
 
   void take_byte(std::uint8_t byte, double now_s);
@@ -78,7 +84,9 @@ class Replicator : public Firmware {
   std::uint32_t executed_count_ = 0;  // since the build start
   std::uint32_t last_count_ = 0;      // of the build that ended last
   double build_since_s_ = 0;
-  std::array<std::int32_t, 5> position_{};
+  std::array<std::int32_t, 5> position_{};  // at the end of the move that was begun last
+  Move move_;                               // the one that was begun last
+  double homing_until_s_ = 0;
   std::array<Heater, 2> tools_{Heater(3), Heater(3)};
   Heater platform_{1};
 };

@@ -114,8 +114,9 @@ void Replicator::take_query(double now_s) {
     case 0x0A:
       return take_tool_query(now_s);
     case 0x0B:
-      return answer(0x81,
-                    {queue_.empty() && now_s >= busy_until_s_ ? std::uint8_t{1} : std::uint8_t{0}});
+      // The true firmware looks at its queue, and at its planner only where that is full.
+      return answer(
+          0x81, {queue_.empty() && now_s >= homing_until_s_ ? std::uint8_t{1} : std::uint8_t{0}});
     case 0x0C:
       return answer(0x81,
                     Bytes(payload_.size() > 3 ? std::min<std::size_t>(payload_[3], 31) : 0, 0));
@@ -184,9 +185,17 @@ Bytes Replicator::statistics() const {
          little_endian(0, 4);
 }
 
+// In the middle of a move, where its axes are on their way.
 Bytes Replicator::position() const {
+  const double took_s = move_.until_s - move_.since_s;
+  const double share =
+      now_s_ >= move_.until_s ? 1 : std::max(0.0, (now_s_ - move_.since_s) / took_s);
   Bytes bytes;
-  for (std::int32_t steps : position_) bytes += little_endian(static_cast<std::uint32_t>(steps), 4);
+  for (std::size_t axis = 0; axis < move_.to.size(); ++axis) {
+    const double way = static_cast<double>(move_.to[axis]) - move_.from[axis];
+    const auto steps = static_cast<std::int32_t>(move_.from[axis] + way * share);
+    bytes += little_endian(static_cast<std::uint32_t>(steps), 4);
+  }
   return bytes + little_endian(0, 2);
 }
 

@@ -39,7 +39,7 @@ struct ReplicatorTraits {
   bool noise_endless = true;     // a stray byte is answered 0x80 until a packet comes; else once
   bool unknown_accepted = true;  // an unknown action is answered 0x81, then the build is lost
   bool version_hidden = true;    // from hosts below version 39
-  bool counts_actions = true;    // build statistics tell how many were executed
+  bool counts_actions = false;   // build statistics tell how many were executed (LINE_NUMBER)
   bool packet_timeout = true;    // a packet cut short is answered 0x8C after 0.2 s
 };
 

@@ -85,7 +85,9 @@ std::size_t FaultyPort::write(std::string_view bytes, double) {
     on_mishap();
   }
   sent += bytes;
-  pass(std::string(bytes), to_printer_);
+  std::string passing(bytes);
+  if (on_send) on_send(passing);
+  if (!passing.empty()) pass(std::move(passing), to_printer_);
   step();
   return bytes.size();
 }

@@ -45,6 +45,8 @@ class FaultyPort : public Port {
   std::function<void(std::size_t written)> on_step;
   // What becomes of the machine at a mishap: a reset, a halt.
   std::function<void()> on_mishap;
+  // May change what passes to the printer, or clear it.
+  std::function<void(std::string& bytes)> on_send;
   // While true, what the firmware says is lost.
   bool lose_answers = false;
   // The channel ends once this many chunks were written.

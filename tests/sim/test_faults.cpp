@@ -229,26 +229,6 @@ TEST(FaultyChannel, X3gIsExactOrFails) {
   tally.check("x3g on Sailfish");
 }
 
-// Found by a long run: a cancel at the panel is told once, and that answer was damaged.
-TEST(FaultyChannel, ACancelWhoseOnlyAnswerIsDamagedIsNoticed) {
-  simulated::Replicator firmware(simulated::Pace{1, false});
-  const FaultRates rates = {.drop_byte = 5 / 200.0,
-                            .drop_chunk = 1 / 200.0,
-                            .flip = 1 / 200.0,
-                            .delay = 1 / 200.0,
-                            .split = 0.5,
-                            .mishap = 1 / 500.0,
-                            .unplug = 1 / 500.0};
-  FaultyPort port(firmware, rates, 813700144357226);
-  port.on_mishap = [&] { firmware.cancel_at_panel(); };
-  const X3gProgram program = x3g_program(kCommands);
-  PrintControl control;
-  const auto failure = failure_of([&] { print_x3g(port, program.bytes, options(), {}, control); });
-  ASSERT_TRUE(failure);
-  EXPECT_STREQ(failure->what(), "The build was cancelled at the printer");
-  EXPECT_TRUE(is_prefix(port.executed(), program.actions));
-}
-
 TEST(FaultyChannel, EndsWithTheChannel) {
   EXPECT_TRUE(rc::check([&] {
     const bool gcode = *rc::gen::arbitrary<bool>();

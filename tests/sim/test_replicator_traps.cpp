@@ -120,6 +120,46 @@ TEST_F(ReplicatorTraps, AbortTakesEffectALittleLater) {
   EXPECT_EQ(says(bytes(kStatistics)).substr(4, 4), "8104") << "cancelled";
 }
 
+const std::string kIsFinished("\x0B", 1);
+const std::string kPosition("\x15", 1);
+
+// The answer to the position query where x is so many steps and the others are 0.
+std::string stands_at(char x) {
+  return hex(bytes(std::string("\x81") + x + std::string(4 * 5 - 1 + 2, '\0')));
+}
+
+// x: 100 steps, 10 mm at 10 mm/s.
+const std::string kMoveOfASecond = std::string("\x9B\x64\0\0\0", 5) + std::string(20, '\0') +
+                                   std::string("\0\0\0\x20\x41\x80\x02", 7);
+
+TEST_F(ReplicatorTraps, IsFinishedThoughItsLastMoveIsNot) {
+  says(bytes(kMoveOfASecond));
+  EXPECT_EQ(says(bytes(kIsFinished)), hex(bytes("\x81\x01")));
+  says("", 0.47);
+  const std::string halfway = says(bytes(kPosition));
+  EXPECT_NE(halfway, stands_at(0));
+  EXPECT_NE(halfway, stands_at(100));
+  says("", 1);
+  EXPECT_EQ(says(bytes(kPosition)), stands_at(100));
+}
+
+TEST_F(ReplicatorTraps, APositionThatIsSetIsShownWithTheNextMove) {
+  says(bytes(std::string("\x8C\x32\0\0\0", 5) + std::string(16, '\0')));
+  EXPECT_EQ(says(bytes(kPosition)), stands_at(0));
+  says(bytes(kMoveOfASecond), 1.1);
+  EXPECT_EQ(says(bytes(kPosition)), stands_at(100));
+}
+
+TEST_F(ReplicatorTraps, ExecutedActionsAreCountedWhereItWasBuiltSo) {
+  Replicator counting(kRealTime, with("counts_actions=on"));
+  for (Replicator* machine : {&machine_, &counting}) {
+    Wire wire(*machine);
+    wire.says(bytes(s3g::build_start("a")) + bytes(std::string("\x96\0\0", 3)));
+    const std::string count = machine == &counting ? "01000000" : "00000000";
+    EXPECT_EQ(hex(wire.says(bytes(kStatistics))).substr(12, 8), count);
+  }
+}
+
 std::optional<Error> print(FaultyPort& port, const X3gProgram& program) {
   PrintControl control;
   return print(port, false, program.bytes, control);
@@ -137,31 +177,6 @@ TEST(ReplicatorLink, ACardChosenInMidPrintEndsIt) {
   EXPECT_EQ(failure->fault(), Fault::kIo);
   EXPECT_THAT(failure->what(), HasSubstr("from its own card"));
   EXPECT_NE(port.executed().back(), "abort") << "the other build is left alone";
-}
-
-// Loses one answer in the middle of a print.
-std::optional<Error> print_losing_an_answer(FaultyPort& port, const X3gProgram& program) {
-  port.on_step = [&](std::size_t written) { port.lose_answers = written == 60; };
-  return print(port, program);
-}
-
-TEST(ReplicatorLink, ALostAnswerIsMadeUpForByItsCount) {
-  Replicator machine(Pace{1, true});
-  FaultyPort port(machine);
-  const X3gProgram program = x3g_program(100);
-  const auto failure = print_losing_an_answer(port, program);
-  EXPECT_FALSE(failure) << failure->what();
-  EXPECT_EQ(port.executed(), program.actions);
-}
-
-TEST(ReplicatorLink, ALostAnswerEndsThePrintWhereNothingIsCounted) {
-  Replicator machine(Pace{1, true}, with("counts_actions=off"));
-  FaultyPort port(machine);
-  const X3gProgram program = x3g_program(100);
-  const auto failure = print_losing_an_answer(port, program);
-  ASSERT_TRUE(failure);
-  EXPECT_THAT(failure->what(), HasSubstr("An answer of the printer got lost"));
-  EXPECT_EQ(port.executed().back(), "abort");
 }
 
 // Each trap alone, over a line that splits what it carries.
