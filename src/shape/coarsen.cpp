@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
 #include <OpenMesh/Tools/Decimater/ModEdgeLengthT.hh>
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <OpenMesh/Tools/Decimater/Observer.hh>
 
 namespace packmerger {
 namespace {
@@ -36,6 +38,21 @@ class QuadricAndLength : public Quadric {
     // Rounding makes the error of flat places slightly negative, which would forbid them.
     return std::max(error, 0.0F) + static_cast<float>(kLengthCost * squared_mm2 * squared_mm2);
   }
+};
+
+// Ends the decimater's work where cancelling was asked for.
+class Watch : public OpenMesh::Decimater::Observer {
+ public:
+  explicit Watch(const Progress& progress) : Observer(kEvery), progress_(progress) {}
+  void notify(std::size_t) override {}
+  bool abort() const override {
+    const std::atomic<bool>* cancelled = progress_.cancelled();
+    return cancelled != nullptr && cancelled->load();
+  }
+
+ private:
+  static constexpr std::size_t kEvery = 1000;  // collapses
+  const Progress& progress_;
 };
 
 PlainMesh to_plain(const Mesh& mesh) {
@@ -71,7 +88,8 @@ TriangleSoup from_plain(const PlainMesh& plain) {
 
 }  // namespace
 
-TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max_edge_mm) {
+TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max_edge_mm,
+                       const Progress& progress) {
   PlainMesh mesh = to_plain(closed_mesh(soup));
   mesh.request_face_normals();
   mesh.update_face_normals();
@@ -90,8 +108,12 @@ TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max
   OpenMesh::Decimater::ModAspectRatioT<PlainMesh>::Handle aspect;
   decimater.add(aspect);
   decimater.module(aspect).set_aspect_ratio(kMaxAspectRatio);
+  Watch watch(progress);
+  decimater.set_observer(&watch);
+  progress.check();
   decimater.initialize();
   decimater.decimate_to_faces(0, 0);
+  progress.check();
   mesh.garbage_collection();
   return from_plain(mesh);
 }

@@ -1,6 +1,7 @@
 // Fewer triangles for the same shape.
 #pragma once
 
+#include "base/progress.h"
 #include "model/mesh.h"
 
 namespace packmerger {
@@ -9,6 +10,8 @@ namespace packmerger {
 // tolerance_mm of where it was and no edge grows beyond max_edge_mm. The topology is kept. The
 // result may intersect itself in narrow places: check it with self_intersects().
 // soup: closed, manifold. Collapsed points end up on one of the points there were.
-TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max_edge_mm);
+// Throws Error{kInterrupted}.
+TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max_edge_mm,
+                       const Progress& progress);
 
 }  // namespace packmerger

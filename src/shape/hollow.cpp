@@ -62,11 +62,11 @@ TriangleSoup pushed_to_depth(TriangleSoup soup, const SurfaceQuery& outer, doubl
 
 // The cavity's boundary with fewer triangles; empty when no attempt keeps the wall.
 std::optional<TriangleSoup> coarse_boundary(const TriangleSoup& fine, const SurfaceQuery& outer,
-                                            double wall_mm) {
+                                            double wall_mm, const Progress& progress) {
   const TriangleSoup pushed = pushed_to_depth(fine, outer, wall_mm);
   for (const double fraction : {1.0, 0.4, 0.1}) {
     TriangleSoup coarse =
-        coarsened(pushed, fraction * kCoarsening * wall_mm, kLongestEdge * wall_mm);
+        coarsened(pushed, fraction * kCoarsening * wall_mm, kLongestEdge * wall_mm, progress);
     if (is_good(coarse, outer, wall_mm)) return coarse;
   }
   if (is_good(pushed, outer, wall_mm)) return pushed;
@@ -87,7 +87,7 @@ std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& out
       // Islands of matter in a cavity have a negative volume.
       if (!good || signed_volume_mm3(fine) < settings.min_cavity_mm3) continue;
       progress.report("hollowing", 0.6);
-      auto coarse = coarse_boundary(fine, outer, settings.wall_mm);
+      auto coarse = coarse_boundary(fine, outer, settings.wall_mm, progress);
       good = coarse.has_value();
       if (coarse) all.push_back(std::move(*coarse));
     }

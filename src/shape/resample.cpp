@@ -29,8 +29,13 @@ constexpr double kMaxVoxels = 6e7;
 constexpr double kCoarsening = 0.2;    // of the tolerance
 constexpr double kLongestEdge = 0.04;  // of the diagonal
 constexpr double kStep = 0.01;         // of the diagonal, see resample.h
+constexpr double kInwards = 0.00731;   // of the way from a border to the triangle's middle
+// What is thinner holds nothing and keeps nothing apart, of the tolerance.
+constexpr double kThin = 0.5;
 // Between sheets of the hull that would touch, of the tolerance.
-constexpr double kGap = 0.1;
+constexpr double kGap = 0.01;
+// By how much a hull is coarsened before it is cut anew, of the tolerance.
+constexpr std::array<double, 7> kMends = {0, 0, 0.02, 0.05, 0.1, 0.2, 0.3};
 // Components smaller than this many voxels are grains of the grid, not of the model.
 constexpr double kGrain = 8;
 
@@ -46,36 +51,45 @@ std::vector<Vec3> spread(const Vec3& a, const Vec3& b, const Vec3& c, double ste
   return points;
 }
 
-// The largest distance from points on soup to target, over points that `counts` accepts.
+// The largest distance from points on soup to target, over those that `counts` accepts; it is asked
+// beside the triangle's border, on which other sheets often stand.
 template <typename Counts>
 double furthest(const TriangleSoup& soup, const SurfaceQuery& target, double step,
-                const Counts& counts) {
+                const Counts& counts, const Progress& progress) {
   std::vector<double> of_triangle(soup.triangles.size(), 0);
   parallel_for(soup.triangles.size(), [&](std::size_t i) {
+    progress.check();
     const auto& [a, b, c] = soup.triangles[i];
     const Vec3& pa = soup.points[a];
     const Vec3& pb = soup.points[b];
     const Vec3& pc = soup.points[c];
     const Vec3 normal = (pb - pa).cross(pc - pa).normalized();
+    const Vec3 middle = (pa + pb + pc) / 3;
     for (const Vec3& point : spread(pa, pb, pc, step)) {
       const double distance = target.distance_mm(point);
-      if (distance > of_triangle[i] && counts(point, normal)) of_triangle[i] = distance;
+      if (distance > of_triangle[i] && counts(point + kInwards * (middle - point), normal))
+        of_triangle[i] = distance;
     }
   });
   return of_triangle.empty() ? 0 : *std::max_element(of_triangle.begin(), of_triangle.end());
 }
 
 double deviation(const TriangleSoup& model, const SurfaceQuery& model_query,
-                 const TriangleSoup& surface, double step) {
+                 const TriangleSoup& surface, double tolerance_mm, double step,
+                 const Progress& progress) {
   const SurfaceQuery surface_query(surface);
   const auto all = [](const Vec3&, const Vec3&) { return true; };
-  // Sheets that lie inside other matter are not part of the outside.
-  const double above = step * 1e-3;
+  // Sheets that lie inside other matter are not part of the outside, nor are folds and crevices
+  // without thickness.
+  const std::array<double, 2> aside{step * 1e-3, kThin * tolerance_mm};
   const auto outside = [&](const Vec3& point, const Vec3& normal) {
-    return normal.allFinite() && model_query.winding_number(point + above * normal) == 0;
+    return normal.allFinite() && std::all_of(aside.begin(), aside.end(), [&](double by) {
+             return model_query.winding_number(point + by * normal) == 0 &&
+                    model_query.winding_number(point - by * normal) != 0;
+           });
   };
-  return std::max(furthest(surface, model_query, step, all),
-                  furthest(model, surface_query, step, outside));
+  return std::max(furthest(surface, model_query, step, all, progress),
+                  furthest(model, surface_query, step, outside, progress));
 }
 
 std::optional<TriangleSoup> without_grains(const TriangleSoup& soup, double voxel_mm) {
@@ -89,8 +103,10 @@ std::optional<TriangleSoup> without_grains(const TriangleSoup& soup, double voxe
 }
 
 // The grid rounds off what is sharp; points go back to the model, but not to another place of it.
-TriangleSoup moved_back(TriangleSoup soup, const SurfaceQuery& model, double voxel_mm) {
+TriangleSoup moved_back(TriangleSoup soup, const SurfaceQuery& model, double voxel_mm,
+                        const Progress& progress) {
   parallel_for(soup.points.size(), [&](std::size_t i) {
+    progress.check();
     const SurfaceQuery::Nearest nearest = model.nearest(soup.points[i]);
     if (nearest.distance_mm < voxel_mm / 2) soup.points[i] = nearest.point;
   });
@@ -99,11 +115,12 @@ TriangleSoup moved_back(TriangleSoup soup, const SurfaceQuery& model, double vox
 
 // The coarsest of a few attempts that does not intersect itself; empty when all do.
 std::optional<Mesh> clean(const TriangleSoup& fine, const SurfaceQuery& model, double voxel_mm,
-                          double tolerance_mm, double max_edge_mm) {
+                          double tolerance_mm, double max_edge_mm, const Progress& progress) {
   for (const bool move : {true, false}) {
-    const TriangleSoup soup = move ? moved_back(fine, model, voxel_mm) : fine;
+    const TriangleSoup soup = move ? moved_back(fine, model, voxel_mm, progress) : fine;
     for (const double fraction : {1.0, 0.3}) {
-      Mesh mesh = closed_mesh(coarsened(soup, fraction * kCoarsening * tolerance_mm, max_edge_mm));
+      Mesh mesh = closed_mesh(
+          coarsened(soup, fraction * kCoarsening * tolerance_mm, max_edge_mm, progress));
       if (!self_intersects(mesh)) return mesh;
     }
   }
@@ -128,25 +145,28 @@ struct Measure {
   double best_mm = std::numeric_limits<double>::infinity();
 
   // The surface with its deviation, if it may stand in for the model.
-  std::optional<Resampled> accepted(Mesh surface) {
-    const double found = deviation(model, query, to_soup(surface), step_mm);
+  std::optional<Resampled> accepted(Mesh surface, const Progress& progress) {
+    const double found = deviation(model, query, to_soup(surface), tolerance_mm, step_mm, progress);
     best_mm = std::min(best_mm, found);
     if (found > tolerance_mm) return std::nullopt;
     return Resampled{std::move(surface), found};
   }
 };
 
-// The exact outside, coarsened a little where rounding made its pieces cross again.
+// The exact outside. Where rounding made its pieces cross again it is cut once more, and then
+// coarsened a little, since the smallest pieces cross most easily.
 std::optional<Resampled> from_hull(const Mesh& mesh, Measure& measure, const Progress& progress) {
-  const auto hull = outer_hull(mesh, kGap * measure.tolerance_mm, progress);
-  if (!hull) return std::nullopt;
-  if (!self_intersects(*hull))
-    if (auto result = measure.accepted(*hull)) return result;
-  for (const double fraction : {0.05, 0.15, 0.3}) {
-    Mesh coarse = closed_mesh(
-        coarsened(to_soup(*hull), fraction * measure.tolerance_mm, measure.max_edge_mm));
-    if (self_intersects(coarse)) continue;
-    if (auto result = measure.accepted(std::move(coarse))) return result;
+  const double gap_mm = kGap * measure.tolerance_mm;
+  std::optional<Mesh> hull = outer_hull(mesh, gap_mm, progress);
+  for (const double mend : kMends) {
+    if (!hull) return std::nullopt;
+    if (!self_intersects(*hull)) return measure.accepted(std::move(*hull), progress);
+    if (mend > 0) {
+      hull = closed_mesh(
+          coarsened(to_soup(*hull), mend * measure.tolerance_mm, measure.max_edge_mm, progress));
+      if (!self_intersects(*hull)) return measure.accepted(std::move(*hull), progress);
+    }
+    hull = outer_hull(*hull, gap_mm, progress);
   }
   return std::nullopt;
 }
@@ -161,10 +181,11 @@ std::optional<Resampled> from_grid(const Mesh& mesh, Measure& measure, const Pro
     const auto level = grid.level(0, progress);
     const auto fine = level ? without_grains(*level, voxel) : std::nullopt;
     if (!fine) continue;
-    auto surface = clean(*fine, measure.query, voxel, measure.tolerance_mm, measure.max_edge_mm);
+    auto surface =
+        clean(*fine, measure.query, voxel, measure.tolerance_mm, measure.max_edge_mm, progress);
     if (!surface) continue;
     progress.check();
-    if (auto result = measure.accepted(std::move(*surface))) return result;
+    if (auto result = measure.accepted(std::move(*surface), progress)) return result;
   }
   return std::nullopt;
 }

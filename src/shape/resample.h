@@ -19,7 +19,8 @@ struct Resampled {
 //
 // The deviation is the largest distance found from the new surface to the model and from the
 // outside of the model to the new surface, at points spread over both no further apart than
-// tolerance_mm or a hundredth of the model's size, whichever is larger.
+// tolerance_mm or a hundredth of the model's size, whichever is larger. Folds and crevices thinner
+// than half of tolerance_mm do not count.
 //
 // mesh: closed, mm; it may intersect itself. tolerance_mm > 0.
 // Throws Error{kBadInput} when the tolerance is not reached with at most 60 million voxels.
