@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "daemon/client.h"
+#include "job/comparison_table.h"
 
 namespace packmerger::cli {
 namespace {
@@ -76,6 +77,18 @@ std::string plain_text(const nlohmann::json& value) {
 std::string text_of(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
   return found == object.end() ? "" : plain_text(*found);
+}
+
+void tell_start(const nlohmann::json& reply) {
+  const nlohmann::json start = reply.value("starts", nlohmann::json());
+  if (!start.is_object()) return;
+  std::string text = fmt::format("Job {} ({}) starts now on {}", start.value("job", 0),
+                                 text_of(start, "name"), text_of(start, "printer"));
+  if (start.value("trays", 1) > 1)
+    text += fmt::format(", tray {} of {}", start.value("tray", 1), start.value("trays", 1));
+  if (const nlohmann::json time = start.value("time_s", nlohmann::json()); time.is_number())
+    text += ", about " + spoken_time(time.get<double>());
+  fmt::print(stderr, "{}.\n", text);
 }
 
 std::string correction_text(const nlohmann::json& correction) {

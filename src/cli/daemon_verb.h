@@ -38,6 +38,9 @@ std::string plain_text(const nlohmann::json& value);
 // A member that is a text; empty when it is not there.
 std::string text_of(const nlohmann::json& object, const char* key);
 
+// Tells the print that an action started at once, where it started one.
+void tell_start(const nlohmann::json& reply);
+
 // What finished prints taught, as the daemon tells it: "1.12 times as long (1.05 to 1.20, 7
 // prints)".
 std::string correction_text(const nlohmann::json& correction);

@@ -173,6 +173,7 @@ void change(const Arguments& arguments, const std::string& verb) {
   if (arguments.daemon.json) return print_json(job);
   fmt::print("Job {} ({}): {}\n", job.at("id").get<std::int64_t>(), text_of(job, "name"),
              text_of(job, "status"));
+  tell_start(job);
 }
 
 }  // namespace

@@ -83,6 +83,7 @@ void change(const Arguments& arguments, const std::string& verb) {
   const json printer = ask(arguments.daemon, request);
   if (arguments.daemon.json) return print_json(printer);
   print_table({kHeading, row_of(printer)});
+  tell_start(printer);
 }
 
 }  // namespace

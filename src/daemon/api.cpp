@@ -5,12 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/job_view.h"
+#include "daemon/waits.h"
 
 namespace packmerger {
 namespace {
 
 using nlohmann::json;
 using Verb = json (*)(Foreman&, const json&);
+using Starts = std::optional<JobRecord> (*)(const Foreman&, const json&);
 using KeyVerb = json (*)(KeyRing&, const json&);
 
 constexpr int kDefaultJobs = 100;
@@ -120,6 +122,27 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
   return kVerbs;
 }
 
+template <std::optional<JobRecord> (*starts)(const Foreman&, std::int64_t)>
+std::optional<JobRecord> start_of_job(const Foreman& foreman, const json& request) {
+  return starts(foreman, id_of(request));
+}
+
+template <std::optional<JobRecord> (*starts)(const Foreman&, const std::string&)>
+std::optional<JobRecord> start_at_printer(const Foreman& foreman, const json& request) {
+  return starts(foreman, name_of(request));
+}
+
+// The verbs that may start a print at once.
+const std::map<std::string, Starts, std::less<>>& starters() {
+  static const std::map<std::string, Starts, std::less<>> kStarters = {
+      {"jobs.approve", start_of_job<printed_by_approve>},
+      {"jobs.again", start_of_job<printed_by_again>},
+      {"printers.clear", start_at_printer<printed_by_clear>},
+      {"printers.resume", start_at_printer<printed_by_resume>},
+  };
+  return kStarters;
+}
+
 json list_keys(KeyRing& keys, const json&) {
   json list = json::array();
   for (const WebKey& key : keys.list())
@@ -143,21 +166,43 @@ const std::map<std::string, KeyVerb, std::less<>>& key_verbs() {
   return kVerbs;
 }
 
-json result_of(Foreman& foreman, KeyRing& keys, std::string_view text) {
+json error_view(Fault fault, const std::string& what, const std::string& hint) {
+  return {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}};
+}
+
+struct Reply {
+  json body;
+  bool done = true;  // otherwise body tells the error
+};
+
+// Who says which print may start, 0 for none, is not surprised by another one.
+Reply start_refused(const JobRecord& start) {
+  const std::string id = std::to_string(start.id);
+  json error = error_view(Fault::kUsage,
+                          "This starts job " + id + " at once, on the printer " + start.printer,
+                          "Say starts=" + id + " where it may start.");
+  error["starts"] = start_view(start);
+  return {error, false};
+}
+
+Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
   const json request = json::parse(text, nullptr, false);
   if (!request.is_object()) not_understood("The request is not a JSON object on one line");
   const auto name = request.find("verb");
   if (name == request.end() || !name->is_string()) not_understood("The request has no verb");
   const auto key_verb = key_verbs().find(name->get<std::string>());
-  if (key_verb != key_verbs().end()) return key_verb->second(keys, request);
+  if (key_verb != key_verbs().end()) return {key_verb->second(keys, request)};
   const auto verb = verbs().find(name->get<std::string>());
   if (verb == verbs().end()) not_understood("The request's verb is unknown");
-  return verb->second(foreman, request);
-}
-
-json error_view(Fault fault, const std::string& what, const std::string& hint) {
-  return {{"ok", false},
-          {"error", {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}}}};
+  const auto starter = starters().find(verb->first);
+  if (starter == starters().end()) return {verb->second(foreman, request)};
+  const std::optional<JobRecord> start = starter->second(foreman, request);
+  if (start && whole_number(request, "starts", start->id) != start->id)
+    return start_refused(*start);
+  json result = verb->second(foreman, request);
+  result["starts"] = start ? start_view(*start) : json();
+  if (start && result.contains("id")) result["starts"]["job"] = result["id"];  // again has a new one
+  return {result};
 }
 
 std::string text_of(const json& view) {
@@ -165,24 +210,31 @@ std::string text_of(const json& view) {
 }
 
 template <typename Work>
-std::string answered(const Work& work) {
+Reply tried(const Work& work) {
   try {
-    return std::string(kDone) + text_of(work()) + "}";
+    return work();
   } catch (const Error& error) {
-    return text_of(error_view(error.fault(), error.what(), error.hint()));
+    return {error_view(error.fault(), error.what(), error.hint()), false};
   } catch (const std::exception& error) {
-    return text_of(error_view(Fault::kInternal, error.what(), "Look into the daemon's messages."));
+    return {error_view(Fault::kInternal, error.what(), "Look into the daemon's messages."), false};
   }
+}
+
+template <typename Work>
+std::string answered(const Work& work) {
+  const Reply reply = tried(work);
+  if (reply.done) return std::string(kDone) + text_of(reply.body) + "}";
+  return text_of({{"ok", false}, {"error", reply.body}});
 }
 
 }  // namespace
 
 std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request) {
-  return answered([&] { return result_of(foreman, keys, request); });
+  return answered([&] { return reply_to(foreman, keys, request); });
 }
 
 std::string answer_upload(Foreman& foreman, const UploadedJob& upload) {
-  return answered([&] { return job_view(foreman, foreman.uploaded(upload)); });
+  return answered([&] { return Reply{job_view(foreman, foreman.uploaded(upload))}; });
 }
 
 std::optional<std::string_view> result_in(std::string_view reply) {

@@ -6,6 +6,7 @@
 #include "daemon/job_view.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
+#include "daemon/waits.h"
 
 namespace packmerger {
 namespace {
@@ -87,6 +88,7 @@ void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
 void Foreman::recover() {
   std::map<std::int64_t, JobRecord> open = store_.open_jobs();  // which the store then changes
   for (auto& [id, job] : open) {
+    if (job.at_once) drop_order(job);
     if (job.state == JobState::kClaiming) finish_claim(job);
     if (job.state != JobState::kSending) continue;
     const PrinterConfig* printer = config_.printer(job.printer);
@@ -100,6 +102,19 @@ void Foreman::recover() {
               std::to_string(job.id) + ".");
     }
   }
+}
+
+// Who wanted a print at once meant the printer as it stood then. What lies on it when a daemon
+// starts again, after a power cut or a week, nobody has looked at.
+void Foreman::drop_order(JobRecord& job) {
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (has_ended(job.state) || job.state == JobState::kSending) return;
+  if (job.next_tray > 1) return;  // somebody has to clear the bed for the rest
+  if (printer != nullptr && !printer->has_bed()) return;
+  job.at_once = false;
+  job.held = job.held || job.state == JobState::kApproved;
+  if (job.state == JobState::kApproved) job.reason = "the order to print it at once is an old one";
+  store_.save(job, "the daemon was started again: not printed by an order of before");
 }
 
 bool Foreman::is_refused(const fs::path& file) {

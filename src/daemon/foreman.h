@@ -56,8 +56,8 @@ class Foreman {
 
   Foreman(const DaemonConfig& config, JobStore& store, Crew& crew, Log log);
 
-  // Once, at the start: finishes or forgets half-done claims, fails half-sent prints, and sends
-  // half-prepared jobs back to be prepared.
+  // Once, at the start: finishes or forgets half-done claims, fails half-sent prints, sends
+  // half-prepared jobs back to be prepared, and lets no order of before start a print.
   void recover();
 
   // A file in the printer's watched folder is whole. Takes it as a job: recorded, then moved into
@@ -86,7 +86,9 @@ class Foreman {
   JobRecord approve(std::int64_t id);  // also ends a hold
   JobRecord hold(std::int64_t id);
   JobRecord cancel(std::int64_t id);
-  JobRecord again(std::int64_t id);  // a new job from an ended one; it needs no approval
+  // A new job from an ended one: its stored program, which counts as approved where that job was,
+  // or its filed model, prepared anew.
+  JobRecord again(std::int64_t id);
   PrinterRecord clear(const std::string& printer);
   // Pauses the print that runs there and lets no other start; or the contrary.
   PrinterRecord pause(const std::string& printer, bool paused);
@@ -100,6 +102,12 @@ class Foreman {
   const LiveJob* live(std::int64_t id) const;
   // The jobs with the workers.
   const std::map<std::int64_t, Preparer>& preparing() const { return preparing_; }
+  // Whether an ended job's program is still there to be printed again.
+  bool has_program(const JobRecord& ended) const;
+  // The job that again() makes of such a one, before it is stored: ready or approved.
+  JobRecord again_of(const JobRecord& ended) const;
+  // Whether the settings, or whoever sent it, approve a job that is ready.
+  bool is_approved_by_itself(const JobRecord& ready) const;
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
   // How much longer the printer takes than estimates of this source predict, as its finished prints
@@ -117,6 +125,7 @@ class Foreman {
   std::string with_told(const JobRecord& job, const std::string& reason) const;
   JobRecord get(std::int64_t id) const;
   const PrinterConfig& get_printer(const std::string& name) const;
+  void drop_order(JobRecord& job);
   LiveJob* printing_at(const std::string& printer);
   LiveJob& get_printing(const std::string& printer);
   void say(const JobRecord& job, const std::string& text) const;
@@ -149,8 +158,8 @@ class Foreman {
   void not_started(JobRecord job, const SendEnded& event);
   void end_untouched(JobRecord job, const SendEnded& event);
 
-  JobRecord print_again(JobRecord job, const JobRecord& old);
-  JobRecord prepare_again(JobRecord job, const JobRecord& old);
+  JobRecord print_again(const JobRecord& old);
+  JobRecord prepare_again(const JobRecord& old);
 
   double retry_at(int failures) const;
   bool is_refused(const std::filesystem::path& file);

@@ -48,6 +48,7 @@ void Foreman::on(const Prepared& event) {
     job->predicted_s = event.predicted_s;
     job->predicted_by = event.predicted_by;
     job->pays = event.doubt.empty();
+    job->doubt = event.doubt;
     job->reason = event.doubt;
     store_.save(*job, job->reason);
     say(*job, "ready");

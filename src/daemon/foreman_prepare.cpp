@@ -101,16 +101,20 @@ void Foreman::start_preparing(const JobRecord& waiting) {
   say(job, "preparing");
 }
 
-void Foreman::approve_by_itself(const JobRecord& ready) {
+bool Foreman::is_approved_by_itself(const JobRecord& ready) const {
   const PrinterConfig* printer = config_.printer(ready.printer);
-  if (printer == nullptr || ready.held || !ready.pays) return;
-  if (printer->approve != Approve::kAuto && !ready.at_once) return;
-  if (!ready.chosen_by.empty()) {  // nobody chose this printer
-    const PrinterConfig* wish = config_.printer(ready.chosen_by);
-    if (wish == nullptr || wish->approve != Approve::kAuto) return;
-  }
+  if (printer == nullptr || ready.held || !ready.pays) return false;
+  if (printer->approve != Approve::kAuto && !ready.at_once) return false;
+  if (ready.chosen_by.empty()) return true;
+  const PrinterConfig* wish = config_.printer(ready.chosen_by);  // nobody chose this printer
+  return wish != nullptr && wish->approve == Approve::kAuto;
+}
+
+void Foreman::approve_by_itself(const JobRecord& ready) {
+  if (!is_approved_by_itself(ready)) return;
   JobRecord job = ready;
   job.state = JobState::kApproved;
+  job.approved = true;
   job.reason.clear();
   std::string why = "approved by itself: it is the cheapest way";
   if (job.variant == kProgramVariant) why = "approved by itself: it is printed as it is";

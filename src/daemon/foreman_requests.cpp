@@ -16,6 +16,19 @@ std::string title(const JobRecord& job) { return "Job " + std::to_string(job.id)
   throw Error(Fault::kUsage, title(job) + " is " + std::string(state_name(job.state)) + what, hint);
 }
 
+// What every job of the same file and for the same printer has in common.
+JobRecord like(const JobRecord& old) {
+  JobRecord job;
+  job.printer = old.printer;
+  job.name = old.name;
+  job.sha256 = old.sha256;
+  job.again_of = old.id;
+  job.chosen_by = old.chosen_by;
+  job.choice = old.choice;
+  job.received_s = wall_clock_s();
+  return job;
+}
+
 }  // namespace
 
 JobRecord Foreman::get(std::int64_t id) const {
@@ -53,7 +66,11 @@ JobRecord Foreman::approve(std::int64_t id) {
               "packmerger jobs show tells what it waits for.");
   if (approves) {
     job.state = JobState::kApproved;
+    job.approved = true;
+  }
+  if (job.state == JobState::kApproved) {
     job.reason.clear();
+    job.at_once = false;  // a person looked at it: no order of before any more
   }
   job.held = false;
   store_.save(job, approves ? "approved" : "no longer held");
@@ -90,49 +107,59 @@ JobRecord Foreman::cancel(std::int64_t id) {
   return job;
 }
 
+bool Foreman::has_program(const JobRecord& ended) const {
+  std::error_code ignored;
+  return ended.trays > 0 && fs::exists(fs::path(ended.folder) / "job.json", ignored);
+}
+
+JobRecord Foreman::again_of(const JobRecord& ended) const {
+  JobRecord job = like(ended);
+  job.state = ended.approved ? JobState::kApproved : JobState::kReady;
+  job.approved = job.at_once = ended.approved;
+  job.folder = ended.folder;
+  job.trays = ended.trays;
+  job.estimates = ended.estimates;
+  job.profile = ended.profile;
+  job.seed = ended.seed;
+  job.variant = ended.variant;
+  job.tray_files = ended.tray_files;
+  job.predicted_s = ended.predicted_s;
+  job.predicted_by = ended.predicted_by;
+  job.pays = ended.pays;
+  job.doubt = ended.doubt;
+  return job;
+}
+
 JobRecord Foreman::again(std::int64_t id) {
   const JobRecord old = get(id);
   if (!has_ended(old.state))
     senseless(old, " and has not ended", "Wait for its end, or cancel it first.");
   get_printer(old.printer);
+  if (has_program(old)) return print_again(old);
   std::error_code ignored;
-  const bool prepared = old.trays > 0 && fs::exists(fs::path(old.folder) / "job.json", ignored);
-  if (!prepared && !(old.filing_done && fs::exists(old.filed, ignored)))
-    throw Error(
-        Fault::kNoInput,
-        "Neither the program nor the model of job " + std::to_string(id) + " is there any more",
-        "Drop the model into the watched folder again.");
-  JobRecord job;
-  job.printer = old.printer;
-  job.name = old.name;
-  job.sha256 = old.sha256;
-  job.again_of = id;
-  job.chosen_by = old.chosen_by;
-  job.choice = old.choice;
-  job.received_s = wall_clock_s();
-  return prepared ? print_again(job, old) : prepare_again(job, old);
+  if (old.filing_done && fs::exists(old.filed, ignored)) return prepare_again(old);
+  throw Error(
+      Fault::kNoInput,
+      "Neither the program nor the model of job " + std::to_string(id) + " is there any more",
+      "Drop the model into the watched folder again.");
 }
 
-JobRecord Foreman::print_again(JobRecord job, const JobRecord& old) {
+// Recorded as ready first: a daemon that dies here leaves a job that asks.
+JobRecord Foreman::print_again(const JobRecord& old) {
+  const JobRecord wanted = again_of(old);
+  JobRecord job = wanted;
   job.state = JobState::kReady;
-  job.folder = old.folder;
-  job.trays = old.trays;
-  job.estimates = old.estimates;
-  job.profile = old.profile;
-  job.seed = old.seed;
-  job.variant = old.variant;
-  job.tray_files = old.tray_files;
-  job.predicted_s = old.predicted_s;
-  job.predicted_by = old.predicted_by;
-  job.pays = old.pays;
   job = store_.add(job);
-  job.state = JobState::kApproved;
-  store_.save(job, "the program of job " + std::to_string(old.id) + " again");
+  job.state = wanted.state;
+  if (!job.approved) job.reason = job.doubt;
+  store_.save(job, "the program of job " + std::to_string(old.id) + " again" +
+                       (job.approved ? "" : ", which nobody had approved"));
   say(job, "job " + std::to_string(old.id) + " again");
   return job;
 }
 
-JobRecord Foreman::prepare_again(JobRecord job, const JobRecord& old) {
+JobRecord Foreman::prepare_again(const JobRecord& old) {
+  JobRecord job = like(old);
   job.origin = old.origin;
   job.by_copy = true;
   job.with_settings = has_settings_beside(old.filed);

@@ -9,7 +9,7 @@
 #include "daemon/json_values.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
-#include "firmware_io/port.h"
+#include "daemon/waits.h"
 #include "model/estimate.h"
 
 namespace packmerger {
@@ -146,44 +146,6 @@ std::string_view kind_name(const JobRecord& job) {
 
 }  // namespace
 
-std::string_view waits_name(Waits waits) {
-  switch (waits) {
-    case Waits::kNothing:
-      return "";
-    case Waits::kApproval:
-      return "approval";
-    case Waits::kHold:
-      return "hold";
-    case Waits::kNoPrinter:
-      return "no_printer";
-    case Waits::kPaused:
-      return "paused";
-    case Waits::kPrinterBusy:
-      return "printer_busy";
-    case Waits::kClearBed:
-      return "clear_bed";
-    case Waits::kNotConnected:
-      return "not_connected";
-  }
-  return "";
-}
-
-Waits waits_for(const Foreman& foreman, const JobRecord& job) {
-  if (job.state != JobState::kReady && job.state != JobState::kApproved) return Waits::kNothing;
-  if (job.held) return Waits::kHold;
-  if (job.state == JobState::kReady) return Waits::kApproval;
-  const PrinterConfig* printer = foreman.config().printer(job.printer);
-  if (printer == nullptr) return Waits::kNoPrinter;
-  const PrinterRecord record = foreman.store().printer(job.printer);
-  if (record.paused) return Waits::kPaused;
-  if (foreman.sending_at(job.printer) != 0) return Waits::kPrinterBusy;
-  if (printer->has_bed() && !record.bed_clear) return Waits::kClearBed;
-  // behind a serial server only another attempt tells
-  if (!is_tcp(printer->port) && !foreman.connected(*printer).value_or(true))
-    return Waits::kNotConnected;
-  return Waits::kNothing;
-}
-
 json job_view(const Foreman& foreman, const JobRecord& job) {
   const std::string_view waits = waits_name(waits_for(foreman, job));
   return {
@@ -209,6 +171,8 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"variant", job.variant},
       {"tray_files", list_or_null(job.tray_files)},
       {"pays", job.pays},
+      {"doubt", or_null(job.doubt)},
+      {"approved", job.approved},
       {"estimates", object_or_null(job.estimates)},
       {"predicted_s", or_null(job.predicted_s)},
       {"printed_s", or_null(job.printed_s)},
@@ -255,6 +219,16 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"corrections", corrections_view(foreman, printer)},
           {"job", sending == 0 ? json() : json(sending)},
           {"print", print_view(foreman.live(sending), unit_of(&printer))}};
+}
+
+json start_view(const JobRecord& job) {
+  return {{"job", job.id},
+          {"name", job.name},
+          {"printer", job.printer},
+          {"tray", job.next_tray},
+          {"trays", job.trays},
+          {"time_s", or_null(std::max(0.0, job.predicted_s - job.printed_s))},
+          {"doubt", or_null(job.doubt)}};
 }
 
 std::string daemon_status(const Foreman& foreman) {

@@ -112,7 +112,7 @@ HttpReply Web::routed(HttpRequest& request) {
   switch (route.target) {
     case WebTarget::kVerb: {
       json verb = {{"verb", route.verb}};
-      for (const char* key : {"limit", "before", "choice"})
+      for (const char* key : {"limit", "before", "choice", "starts"})
         if (const auto given = request.query.find(key); given != request.query.end())
           verb[key] = number(given->second).value_or(-1);
       if (route.verb.starts_with("jobs.") && !route.id.empty())

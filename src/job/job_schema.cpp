@@ -67,9 +67,22 @@ ALTER TABLE job ADD COLUMN tray_files TEXT NOT NULL DEFAULT '';
 PRAGMA user_version = 7;
 )";
 
+// What was approved before shows in its history; that of a job printed again was nobody's approval.
+constexpr const char* kAddApproval = R"(
+ALTER TABLE job ADD COLUMN approved INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN doubt TEXT NOT NULL DEFAULT '';
+UPDATE job SET
+  approved = EXISTS (SELECT 1 FROM event WHERE event.job = job.id AND event.state = 'approved'
+                     AND event.note NOT LIKE 'the program of job % again'),
+  doubt = COALESCE((SELECT note FROM event WHERE event.job = job.id AND event.state = 'ready'
+                    ORDER BY rowid LIMIT 1), '');
+PRAGMA user_version = 8;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 7> kSteps = {kMakeTables, kAddTold,   kAddPrograms, kAddSettings,
-                                               kAddTimes,   kAddChoice, kAddTrayFiles};
+constexpr std::array<const char*, 8> kSteps = {kMakeTables,   kAddTold,    kAddPrograms,
+                                               kAddSettings,  kAddTimes,   kAddChoice,
+                                               kAddTrayFiles, kAddApproval};
 
 }  // namespace
 

@@ -42,7 +42,7 @@ constexpr std::string_view kColumns =
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
     "told, told_total, variant, at_once, with_settings, predicted_s, "
     "predicted_by, printed_s, paused_s, chosen_by, choice, "
-    "profile, seed, tray_files";
+    "profile, seed, tray_files, approved, doubt";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -73,6 +73,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
   statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
   statement.bind(job.profile).bind(job.seed).bind(job.tray_files);
+  statement.bind(flag(job.approved)).bind(job.doubt);
 }
 
 JobState read_state(Statement& row) {
@@ -121,6 +122,8 @@ JobRecord read_job(Statement& row) {
   job.profile = row.text();
   job.seed = row.integer();
   job.tray_files = row.text();
+  job.approved = row.flag();
+  job.doubt = row.text();
   return job;
 }
 

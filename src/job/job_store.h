@@ -35,23 +35,26 @@ struct JobRecord {
   bool with_settings = false;  // a settings file came with it, and lies beside it
   std::string sha256;          // of its bytes; empty until they were hashed
   JobState state = JobState::kClaiming;
-  bool held = false;         // not sent until somebody approves it
-  int attempt = 0;           // how often preparing began
-  std::string folder;        // the prepared job folder; empty until preparing began
-  int trays = 0;             // 0 until prepared
-  int next_tray = 1;         // the tray that is sent now or next, from 1
-  std::string profile;       // the id of the profile it was prepared with
-  std::int64_t seed = 0;     // of its random choices; a program has none
-  std::string tray_files;    // what the printer is given of each tray, and the SHA-256 of its bytes
-                             // when it was prepared, JSON text; empty: not known
-  std::string variant;       // what was prepared: packed, hollow, solid, or program: as it came
-  bool pays = false;         // nothing speaks against printing what was prepared
-  bool at_once = false;      // whoever sent it asked for it to be printed as soon as it is ready
-  std::string estimates;     // job.json's "estimates", JSON text; empty until prepared
-  std::string reason;        // why it failed, was cancelled or asks; one sentence
-  std::string hint;          // what to do next; may be empty
-  std::string filed;         // where the file ended, below done/ or failed/; empty until chosen
-  bool filing_done = false;  // the file and the note beside it are there
+  bool held = false;       // not sent until somebody approves it
+  int attempt = 0;         // how often preparing began
+  std::string folder;      // the prepared job folder; empty until preparing began
+  int trays = 0;           // 0 until prepared
+  int next_tray = 1;       // the tray that is sent now or next, from 1
+  std::string profile;     // the id of the profile it was prepared with
+  std::int64_t seed = 0;   // of its random choices; a program has none
+  std::string tray_files;  // what the printer is given of each tray, and the SHA-256 of its bytes
+                           // when it was prepared, JSON text; empty: not known
+  std::string variant;     // what was prepared: packed, hollow, solid, or program: as it came
+  bool pays = false;       // nothing speaks against printing what was prepared
+  std::string doubt;       // what speaks against it; one sentence
+  bool approved = false;   // what was prepared was approved once, by somebody or by the settings
+  bool at_once = false;    // an order: whoever sent it, or asked for it again, wants it printed as
+                           // soon as it can be. It does not outlive the daemon that took it
+  std::string estimates;   // job.json's "estimates", JSON text; empty until prepared
+  std::string reason;      // why it failed, was cancelled or asks; one sentence
+  std::string hint;        // what to do next; may be empty
+  std::string filed;       // where the file ended, below done/ or failed/; empty until chosen
+  bool filing_done = false;   // the file and the note beside it are there
   std::int64_t again_of = 0;  // the job whose program or file this one uses again; 0: none
   std::int64_t told = 0;      // of the tray sent last: lines or bytes that the printer acknowledged
   std::int64_t told_total = 0;  // of so many; 0: not known

@@ -1,5 +1,5 @@
 // Figures and states as people read them.
-import { hasEnded, type Job, type Printer } from './daemon/types';
+import { hasEnded, type Job, type Printer, type Start } from './daemon/types';
 
 const rounded = (value: number, digits: number): string =>
   value.toLocaleString('en', { maximumFractionDigits: digits, minimumFractionDigits: digits });
@@ -132,6 +132,18 @@ export function nextStep(job: Job): string {
     case 'not_connected': return 'Connect the printer and switch it on; the job then starts by itself.';
     case null: return '';
   }
+}
+
+// The question before a tap starts a print.
+export function startInWords({ job, name, printer, tray, trays, time_s, doubt }: Start) {
+  const which = trays > 1 ? `Tray ${tray} of ${trays} of ${name}` : name;
+  return {
+    title: `Start printing on ${printer}?`,
+    text: [`${which} (job ${job}) starts now on ${printer}.`,
+           time_s === null ? 'How long it takes is not known.' : `It takes about ${duration(time_s)}.`,
+           doubt === null ? '' : `What speaks against it: ${doubt}.`].filter(Boolean).join(' '),
+    yes: 'Start the print', no: 'Not yet', calm: true,
+  };
 }
 
 const HEATERS: Record<string, string> = { tool: 'Nozzle', bed: 'Bed', chamber: 'Chamber' };

@@ -27,8 +27,8 @@ class Print(unittest.TestCase):
         self.daemon = Daemon(settings + f'[printer.lab]\nprofile = "marlin"\nport = "{port}"\napprove = "{approve}"\n')
         self.addCleanup(self.daemon.close)
 
-    def send(self, wants_print, name=b"part.gcode"):
-        form = wire.form(wire.octoprint_fields(wants_print), name, GCODE)
+    def send(self, wants_print, name=b"part.gcode", program=GCODE):
+        form = wire.form(wire.octoprint_fields(wants_print), name, program)
         status, body, headers = self.daemon.ask("POST", BASE + "/api/files/local", form,
                                                 {"Content-Type": "multipart/form-data; boundary=" + wire.BOUNDARY.decode()})
         self.assertEqual(status, 201, body)
@@ -77,6 +77,23 @@ class Print(unittest.TestCase):
         status, body, _ = self.daemon.ask("POST", location, json.dumps({"command": "select", "print": True}))
         self.assertEqual(status, 409, body)
         self.waits(number, "approval")
+
+    def test_a_doubt_is_not_approved_by_a_button_that_does_not_show_it(self):
+        self.begin("auto")
+        self.clear()
+        number, location = self.send(False, program=b"G28\nG1 X680 F6000\n")
+        self.waits(number, "hold")
+        status, body, _ = self.daemon.ask("POST", location, json.dumps({"command": "select", "print": True}))
+        self.assertEqual(status, 409, body)
+        self.assertEqual(self.daemon.ask("POST", f"/api/v1/jobs/{number}/cancel")[0], 200)
+        status, body, _ = self.daemon.ask("POST", f"/api/v1/jobs/{number}/again?starts=0")
+        self.assertEqual(status, 200, body)
+        again = json.loads(body)["id"]
+        self.waits(again, "approval")
+        self.assertIn("680", self.job(again)["doubt"])
+        status, body, _ = self.daemon.ask("POST", f"/api/v1/jobs/{again}/approve?starts=0")
+        self.assertEqual(status, 409, body)
+        self.assertEqual(json.loads(body)["error"]["starts"]["job"], again)
 
     def test_the_monitor_of_a_slicer(self):
         self.begin("auto", speed=1)

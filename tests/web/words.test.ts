@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence } from '../../src/web/words';
+import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords } from '../../src/web/words';
 import { ownEstimate, type Job } from '../../src/web/daemon/types';
 
 const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
@@ -47,4 +47,12 @@ test('a held job says so before anything else, and a printing one how it prints'
   expect(jobBadge({ ...job, held: true, state: 'failed' }).text, 'a hold ends with its job').toBe('Failed');
   expect(jobBadge({ ...job, state: 'sending', progress: { stage: 'waiting', fraction: 0 } }).text).toBe('Asks you');
   expect(jobBadge({ ...job, state: 'approved', waits_for: 'clear_bed' }).tone).toBe('attention');
+});
+
+test('the question before a print starts names what, where, and for how long', () => {
+  const start = { job: 5, name: 'a.stl', printer: 'ender', tray: 1, trays: 1, time_s: 7800, doubt: null };
+  expect(plain(startInWords(start).text)).toBe('a.stl (job 5) starts now on ender. It takes about 2 h 10 min.');
+  const doubtful = { ...start, tray: 2, trays: 3, time_s: null, doubt: 'packing does not pay' };
+  expect(startInWords(doubtful).text).toBe(
+    'Tray 2 of 3 of a.stl (job 5) starts now on ender. How long it takes is not known. What speaks against it: packing does not pay.');
 });

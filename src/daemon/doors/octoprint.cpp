@@ -200,7 +200,8 @@ HttpReply command_file(const DoorCall& call) {
   if (command_of(body) != "select") return door_error(400, "The only command is select.");
   const json job = job_named(call);
   if (!body.contains("print") || body["print"] != true) return {.status = 204, .body = {}};
-  if (printer_at(call)["approve"] != "auto")
+  const bool has_doubt = job["state"] == "ready" && job["pays"] != true;  // no slicer shows it
+  if (printer_at(call)["approve"] != "auto" || has_doubt)
     return door_error(409, "Job " + job["id"].dump() + " waits for approval in PackMerger.");
   if (job["held"] != true) return {.status = 204, .body = {}};
   return done(call.desk.ask(json{{"verb", "jobs.approve"}, {"id", job["id"]}}.dump()));

@@ -1,13 +1,13 @@
 // Requests to the daemon, and what went wrong with one in words.
 import { readKey } from './key';
-import type { Job, Report, UploadRules } from './types';
+import type { Job, Report, Start, UploadRules } from './types';
 
 const BASE = '/api/v1/';
 
-// status 0: no answer came.
+// status 0: no answer came. starts: it is only refused because it starts that print at once.
 export class Refusal extends Error {
   constructor(readonly status: number, readonly what: string, readonly hint: string,
-              readonly retryAfter_s = 0) {
+              readonly retryAfter_s = 0, readonly starts: Start | null = null) {
     super(what);
   }
 }
@@ -25,8 +25,9 @@ export function refusalOf(status: number, body: string, retryAfter: string | nul
   const wait_s = Number(retryAfter ?? 0) || 0;
   const unknown = new Refusal(status, `The request was refused (${status})`, 'Try again in a moment.', wait_s);
   try {
-    const { what, hint } = (JSON.parse(body) as { error: Record<string, unknown> }).error;
-    return typeof what === 'string' && typeof hint === 'string' ? new Refusal(status, what, hint, wait_s) : unknown;
+    const { what, hint, starts } = (JSON.parse(body) as { error: Record<string, unknown> }).error;
+    if (typeof what !== 'string' || typeof hint !== 'string') return unknown;
+    return new Refusal(status, what, hint, wait_s, typeof starts === 'object' ? starts as Start | null : null);
   } catch {
     return unknown;
   }
@@ -57,9 +58,12 @@ export const jobsBefore = (id: number, limit: number): Promise<Job[]> => json(`j
 export const uploadRules = (): Promise<UploadRules> => json('uploads');
 
 export type JobVerb = 'approve' | 'hold' | 'cancel' | 'again';
-export const changeJob = (id: number, verb: JobVerb): Promise<Job> =>
-  json(`jobs/${id}/${verb}`, { method: 'POST' });
+// starts: the job that this may start at once, 0 for none; refused where it would start another.
+export const changeJob = (id: number, verb: JobVerb, starts: number): Promise<Job> =>
+  json(`jobs/${id}/${verb}?starts=${starts}`, { method: 'POST' });
 
-export type PrinterVerb = 'clear' | 'pause' | 'resume' | 'stop' | `answer?choice=${number}`;
-export const changePrinter = (name: string, verb: PrinterVerb): Promise<unknown> =>
-  json(`printers/${encodeURIComponent(name)}/${verb}`, { method: 'POST' });
+export type PrinterVerb = 'clear' | 'pause' | 'resume' | 'stop';
+export const changePrinter = (name: string, verb: PrinterVerb, starts: number): Promise<unknown> =>
+  json(`printers/${encodeURIComponent(name)}/${verb}?starts=${starts}`, { method: 'POST' });
+export const answerPrinter = (name: string, choice: number): Promise<unknown> =>
+  json(`printers/${encodeURIComponent(name)}/answer?choice=${choice}`, { method: 'POST' });

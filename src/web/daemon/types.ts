@@ -75,6 +75,8 @@ export interface Job {
   tray: number;
   variant: Exclude<Way, 'as_is'> | 'program' | '';  // what was prepared; '' before, and in old jobs
   pays: boolean;
+  doubt: string | null;  // what speaks against printing what was prepared
+  approved: boolean;
   estimates: Estimates | null;
   reason: string;
   hint: string;
@@ -113,6 +115,17 @@ export interface Printer {
 export interface State {
   jobs: Job[];
   printers: Printer[];
+}
+
+// The print that an action starts at once.
+export interface Start {
+  job: number;
+  name: string;
+  printer: string;
+  tray: number;
+  trays: number;
+  time_s: number | null;
+  doubt: string | null;
 }
 
 export interface UploadRules {

@@ -1,5 +1,5 @@
 // What may be done with a job in its present state.
-import { changeJob, changePrinter, type JobVerb } from '../daemon/api';
+import { changeJob, changePrinter, type JobVerb, type PrinterVerb } from '../daemon/api';
 import { hasEnded, type Job } from '../daemon/types';
 import { act } from '../ui/act';
 import { ask } from '../ui/ask';
@@ -26,21 +26,25 @@ function askToCancel(job: Job): void {
     text: prints ? `The print of ${job.name} ends, and cannot be taken up again where it was.`
                  : `${job.name} is not printed. You can print it again later from the history.`,
     yes: 'Cancel the job', no: prints ? 'Let it print' : 'Keep it',
-    act: () => act(() => changeJob(job.id, 'cancel'), `Job ${job.id} is cancelled`),
+    act: () => act((starts) => changeJob(job.id, 'cancel', starts), `Job ${job.id} is cancelled`),
   });
 }
+
+const queuedAgain = (job: Job): string =>
+  (job.waits_for === 'approval' ? `${job.name} is job ${job.id} now, and waits for your approval` : `${job.name} is queued again, as job ${job.id}`);
 
 function DeedButton({ deed, job, first }: { deed: Deed; job: Job; first: boolean }) {
   const about = `job ${job.id}, ${job.name}`;
   const primary = first ? { kind: 'primary' as const } : {};
-  const change = (verb: JobVerb, done: string) => () => act(() => changeJob(job.id, verb), done);
+  const change = (verb: JobVerb, done: string) => () => act((starts) => changeJob(job.id, verb, starts), done);
+  const printer = (verb: PrinterVerb, done: string) => () => act((starts) => changePrinter(job.printer, verb, starts), done);
   switch (deed) {
     case 'clear':
       return <Button {...primary} icon="bed" label={`The bed of ${job.printer} is clear`}
-                     onClick={() => act(() => changePrinter(job.printer, 'clear'), `The bed of ${job.printer} is clear`)}>Bed is clear</Button>;
+                     onClick={printer('clear', `The bed of ${job.printer} is clear`)}>Bed is clear</Button>;
     case 'resume':
       return <Button {...primary} icon="play" label={`Resume ${job.printer}`}
-                     onClick={() => act(() => changePrinter(job.printer, 'resume'), `${job.printer} goes on`)}>Resume the printer</Button>;
+                     onClick={printer('resume', `${job.printer} goes on`)}>Resume the printer</Button>;
     case 'approve': {
       const word = job.state === 'ready' ? 'Approve' : 'Let it go on';
       return <Button {...primary} icon="check" label={`${word}: ${about}`}
@@ -51,7 +55,7 @@ function DeedButton({ deed, job, first }: { deed: Deed; job: Job; first: boolean
     case 'cancel':
       return <Button icon="close" kind="danger" label={`Cancel ${about}`} onClick={() => askToCancel(job)}>Cancel</Button>;
     case 'again':
-      return <Button icon="again" label={`Print again: ${about}`} onClick={change('again', `${job.name} is queued again`)}>Again</Button>;
+      return <Button icon="again" label={`Print again: ${about}`} onClick={() => act((starts) => changeJob(job.id, 'again', starts), queuedAgain)}>Again</Button>;
   }
 }
 

@@ -1,5 +1,5 @@
 // One printer: how it stands, how hot it is, what it prints, and what it may be told.
-import { changePrinter, type PrinterVerb } from '../daemon/api';
+import { answerPrinter, changePrinter, type PrinterVerb } from '../daemon/api';
 import type { Heater, Job, Print, Printer } from '../daemon/types';
 import { jobHref } from '../route';
 import { act } from '../ui/act';
@@ -8,7 +8,7 @@ import { Badge, Bar, Button } from '../ui/bits';
 import { degrees, duration, heaterName, printerBadge } from '../words';
 
 function tell(printer: Printer, verb: PrinterVerb, done: string): void {
-  act(() => changePrinter(printer.name, verb), done);
+  act((starts) => changePrinter(printer.name, verb, starts), done);
 }
 
 export function PrinterCard({ printer, job }: { printer: Printer; job: Job | undefined }) {
@@ -81,7 +81,7 @@ function Question({ printer, print }: { printer: Printer; print: Print }) {
       <div class="buttons">
         {choices.map((choice, index) => (
           <Button key={index} kind={index === 0 ? 'primary' : 'quiet'}
-                  onClick={() => tell(printer, `answer?choice=${index}`, `${printer.name}: ${choice}`)}>{choice}</Button>
+                  onClick={() => act(() => answerPrinter(printer.name, index), `${printer.name}: ${choice}`)}>{choice}</Button>
         ))}
       </div>
     </div>

@@ -1,8 +1,10 @@
-// Does what a button says: asks for the key where there is none, tells how it went.
+// Does what a button says: asks for the key where there is none, and before a print starts; tells how it went.
+import { ask } from './ask';
 import { complain, say } from './notes';
 import { Refusal } from '../daemon/api';
 import { readKey } from '../daemon/key';
 import { store } from '../store';
+import { startInWords } from '../words';
 
 let waiting: (() => void) | null = null;
 
@@ -23,14 +25,18 @@ export function keyRefused(): void {
   waiting = null;
 }
 
-export function act(request: () => Promise<unknown>, done: string): void {
+// request is given the job that it may start at once; 0: none yet, since nobody was asked.
+export function act<T>(request: (starts: number) => Promise<T>, done: string | ((reply: T) => string), starts = 0): void {
   const run = async (): Promise<void> => {
     try {
-      await request();
-      say(done);
+      const reply = await request(starts);
+      say(typeof done === 'string' ? done : done(reply));
     } catch (error) {
-      if (!(error instanceof Refusal) || error.status !== 401) return complain(error);
-      waiting = () => act(request, done);
+      if (!(error instanceof Refusal)) return complain(error);
+      const start = error.starts;
+      if (start !== null) return ask({ ...startInWords(start), act: () => act(request, done, start.job) });
+      if (error.status !== 401) return complain(error);
+      waiting = () => act(request, done, starts);
       store.set({ asksForKey: `${error.what}.` });
     }
   };

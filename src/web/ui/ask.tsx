@@ -1,4 +1,4 @@
-// Asks once before what cannot be taken back.
+// Asks once before what cannot be taken back, or before something moves.
 import { Button } from './bits';
 import { Dialog } from './dialog';
 import { Store } from '../store';
@@ -9,6 +9,7 @@ interface Question {
   text: string;
   yes: string;
   no: string;
+  calm?: boolean;  // nothing is lost by it
   act: () => void;
 }
 
@@ -26,7 +27,7 @@ export function AskDialog() {
       <p>{question.text}</p>
       <div class="buttons end">
         <Button onClick={close}>{question.no}</Button>
-        <Button kind="danger" onClick={() => {
+        <Button kind={question.calm ? 'primary' : 'danger'} onClick={() => {
           close();
           question.act();
         }}>{question.yes}</Button>

@@ -89,6 +89,9 @@ describe('a proposal', { skip: missing }, () => {
     for (let i = 0; i < 60 && !(await focused()).startsWith('Approve'); i += 1) await page.keyboard.press('Tab');
     assert.match(await focused(), /^Approve: job 1/);
     await page.keyboard.press('Enter');
+    await page.getByRole('dialog', { name: 'Start printing on fair?' }).waitFor();
+    await page.keyboard.press('Tab');
+    await page.keyboard.press('Enter');
     await until('it is printed', async () => (await shop.job(1)).state === 'done', 120);
     await page.locator('.job-head').getByText('Printed').waitFor();
     await table.getByText('The cheapest is proposed').waitFor();

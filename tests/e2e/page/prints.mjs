@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, describe, test } from 'node:test';
-import { assertAccessible, assertNoSideways, Browser, drop, missing, screenshot } from './browser.mjs';
+import { assertAccessible, assertNoSideways, Browser, drop, missing, screenshot, WIDTHS } from './browser.mjs';
 import { bunny, until, Workshop } from './workshop.mjs';
 
 // A machine that asks for its filament before it prints.
@@ -196,6 +196,19 @@ describe('a print', { skip: missing }, () => {
     await row.getByText('Held').waitFor();
     await row.getByRole('button', { name: /^Approve/ }).click();
     await row.getByRole('button', { name: /^The bed of ender is clear/ }).click();
+    const question = page.getByRole('dialog', { name: 'Start printing on ender?' });
+    await question.getByText(/hare\.obj \(job 2\) starts now on ender\. It takes about \d/).waitFor();
+    await assertAccessible(page, 'the question before a print starts');
+    for (const width of ['wide', 'narrow']) {
+      await page.setViewportSize(WIDTHS[width]);
+      await assertNoSideways(page, `the question before a print starts, ${width}`);
+      await screenshot(page, `starts-${width}`);
+    }
+    await page.setViewportSize(WIDTHS.wide);
+    await question.getByRole('button', { name: 'Not yet' }).click();
+    assert.equal((await shop.ask('printers')).find((one) => one.name === 'ender').bed, 'not clear', 'nothing was said to the printer');
+    await row.getByRole('button', { name: /^The bed of ender is clear/ }).click();
+    await question.getByRole('button', { name: 'Start the print' }).click();
     await card('ender').getByText('Load the blue filament').waitFor({ timeout: 60_000 });
     await card('ender').getByText(/°C of 2\d\d/).or(card('ender').getByText('215')).first().waitFor();
     assert.match(await page.title(), /^\(\d+\) PackMerger$/, 'the tab tells that somebody is waited for');
@@ -230,6 +243,7 @@ describe('a print', { skip: missing }, () => {
     await open(`#/jobs/${id}`);
     await page.getByRole('link', { name: 'job 2' }).waitFor();
     await page.getByRole('button', { name: 'The bed of ender is clear' }).click();
+    await page.getByRole('dialog').getByRole('button', { name: 'Start the print' }).click();
     await page.locator('.job-head progress').waitFor();
     await open('#/');
     await card('ender').getByRole('group').getByRole('button').first().click({ timeout: 60_000 });

@@ -8,6 +8,9 @@
 namespace packmerger {
 namespace {
 
+constexpr const char* kDropSinceVersion7 =
+    "ALTER TABLE job DROP COLUMN approved; ALTER TABLE job DROP COLUMN doubt;";
+
 constexpr const char* kDropSinceVersion6 = "ALTER TABLE job DROP COLUMN tray_files;";
 
 constexpr const char* kDropSinceVersion1 =
@@ -44,7 +47,7 @@ TEST(JobSchema, AFileOfTheFirstVersionIsTakenOver) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "jobs.sqlite";
   const std::int64_t id = JobStore(file).add(prepared_job()).id;
-  age(file, 1, std::string(kDropSinceVersion1) + kDropSinceVersion6);
+  age(file, 1, std::string(kDropSinceVersion1) + kDropSinceVersion6 + kDropSinceVersion7);
   JobStore store(file);
   const JobRecord back = store.find(id).value();
   EXPECT_EQ(back.name, prepared_job().name);
@@ -56,7 +59,7 @@ TEST(JobSchema, JobsPreparedBeforeTheirTraysWereHashedAreTakenOver) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "jobs.sqlite";
   const std::int64_t id = JobStore(file).add(prepared_job()).id;
-  age(file, 6, kDropSinceVersion6);
+  age(file, 6, std::string(kDropSinceVersion6) + kDropSinceVersion7);
   for (const char* expected : {"", "[1]"}) {  // the second time it is of today's version
     JobStore store(file);
     JobRecord back = store.find(id).value();
@@ -67,6 +70,34 @@ TEST(JobSchema, JobsPreparedBeforeTheirTraysWereHashedAreTakenOver) {
     back.tray_files = "[1]";
     store.save(back);
   }
+}
+
+// Its history tells what was approved, and that of a job printed again was nobody's approval.
+TEST(JobSchema, WhatWasApprovedBeforeIsKnown) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "jobs.sqlite";
+  {
+    JobStore store(file);
+    JobRecord doubtful = prepared_job();
+    doubtful.state = JobState::kReceived;
+    doubtful = store.add(doubtful);
+    doubtful.state = JobState::kPreparing;
+    store.save(doubtful);
+    doubtful.state = JobState::kReady;
+    store.save(doubtful, "leaves the build volume");
+    store.save(doubtful, "held");
+    for (const char* note : {"approved", "the program of job 1 again"}) {
+      JobRecord approved = store.add(prepared_job());
+      approved.state = JobState::kApproved;
+      store.save(approved, note);
+    }
+  }
+  age(file, 7, kDropSinceVersion7);
+  JobStore store(file);
+  EXPECT_FALSE(store.find(1)->approved);
+  EXPECT_EQ(store.find(1)->doubt, "leaves the build volume");
+  EXPECT_TRUE(store.find(2)->approved);
+  EXPECT_FALSE(store.find(3)->approved);
 }
 
 }  // namespace

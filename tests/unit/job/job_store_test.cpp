@@ -87,6 +87,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.profile = "marlin";
     job.seed = 7;
     job.tray_files = "[]";
+    job.approved = true;
+    job.doubt = "doubt";
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -114,6 +116,8 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.profile, "marlin");
   EXPECT_EQ(back.seed, 7);
   EXPECT_EQ(back.tray_files, "[]");
+  EXPECT_TRUE(back.approved);
+  EXPECT_EQ(back.doubt, "doubt");
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
