@@ -185,11 +185,11 @@ void add_jobs(CLI::App& program) {
   const auto action = [&](const std::string& name, const std::string& help) {
     return add_daemon_verb(*verb, name, help, arguments->daemon);
   };
-  CLI::App* list_all = action("list", "The newest jobs, what they do and what they wait for");
-  list_all->add_option("--limit", arguments->limit, "how many")
+  CLI::App* list_all = action("list", "All jobs that have not ended, then the newest that have");
+  list_all->add_option("--limit", arguments->limit, "how many of those that have ended")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  list_all->add_option("--before", arguments->before, "only jobs older than the one of this number")
+  list_all->add_option("--before", arguments->before, "only jobs that ended before the one of this number")
       ->check(CLI::PositiveNumber);
   list_all->callback([arguments] { list(*arguments); });
   const auto with_id = [&](CLI::App* one) {

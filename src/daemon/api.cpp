@@ -43,14 +43,21 @@ std::string name_of(const json& request, const std::string& what = "the printer'
   return found->get<std::string>();
 }
 
+// Whatever has not ended, first; then so many of those that have. The last of them asks for the
+// next page, which holds only ended ones.
 json list_jobs(Foreman& foreman, const json& request) {
   const std::int64_t limit = whole_number(request, "limit", kDefaultJobs);
   if (limit < 1 || limit > kMostJobs) not_understood("limit must be from 1 to 1000");
+  const bool is_first = !request.contains("before");
   const std::int64_t before =
       whole_number(request, "before", std::numeric_limits<std::int64_t>::max());
   if (before < 1) not_understood("before must be a job's id");
   json jobs = json::array();
-  for (const JobRecord& job : foreman.store().newest(static_cast<int>(limit), before))
+  const auto& open = foreman.store().open_jobs();
+  if (is_first)
+    for (auto job = open.rbegin(); job != open.rend(); ++job)
+      if (!has_ended(job->second.state)) jobs.push_back(job_view(foreman, job->second));
+  for (const JobRecord& job : foreman.store().newest_ended(static_cast<int>(limit), before))
     jobs.push_back(job_view(foreman, job));
   return jobs;
 }
@@ -201,7 +208,8 @@ Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
     return start_refused(*start);
   json result = verb->second(foreman, request);
   result["starts"] = start ? start_view(*start) : json();
-  if (start && result.contains("id")) result["starts"]["job"] = result["id"];  // again has a new one
+  if (start && result.contains("id"))
+    result["starts"]["job"] = result["id"];  // again has a new one
   return {result};
 }
 

@@ -76,6 +76,7 @@ UPDATE job SET
                      AND event.note NOT LIKE 'the program of job % again'),
   doubt = COALESCE((SELECT note FROM event WHERE event.job = job.id AND event.state = 'ready'
                     ORDER BY rowid LIMIT 1), '');
+CREATE INDEX job_ended ON job (ended_s) WHERE ended_s > 0;
 PRAGMA user_version = 8;
 )";
 

@@ -238,8 +238,14 @@ std::optional<JobRecord> JobStore::find(std::int64_t id) const {
 
 const std::map<std::int64_t, JobRecord>& JobStore::open_jobs() const { return database_->open; }
 
-std::vector<JobRecord> JobStore::newest(int limit, std::int64_t before) const {
-  Statement rows(database_->connection, select("WHERE id < ? ORDER BY id DESC LIMIT ?"));
+std::vector<JobRecord> JobStore::newest_ended(int limit, std::int64_t before) const {
+  const std::optional<JobRecord> last = find(before);
+  const bool is_ended = last && last->ended_s > 0;
+  Statement rows(database_->connection,
+                 select("WHERE ended_s > 0 AND " +
+                        std::string(is_ended ? "(ended_s, id) < (?, ?)" : "id < ?") +
+                        " ORDER BY ended_s DESC, id DESC LIMIT ?"));
+  if (is_ended) rows.bind(last->ended_s);
   rows.bind(before).bind(std::int64_t{limit});
   return read_jobs(rows);
 }

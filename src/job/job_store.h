@@ -107,8 +107,9 @@ class JobStore {
   // Jobs that have not ended, and ended ones whose file is not yet filed, by id. They are at hand
   // in memory, as the database has them; a write changes them.
   const std::map<std::int64_t, JobRecord>& open_jobs() const;
-  // At most `limit` jobs whose ids are below `before`, newest first.
-  std::vector<JobRecord> newest(
+  // At most `limit` jobs that have ended, the one that ended last first; with `before` only those
+  // that ended before that job, or, where it has not ended, have lower ids.
+  std::vector<JobRecord> newest_ended(
       int limit, std::int64_t before = std::numeric_limits<std::int64_t>::max()) const;
   // The newest other job with the same bytes for any printer; 0: none.
   std::int64_t same_bytes(const JobRecord& job) const;

@@ -183,9 +183,13 @@ HttpReply upload(const DoorCall& call) {
 json job_named(const DoorCall& call) {
   const HttpReply jobs = call.desk.ask(R"({"verb": "jobs.list", "limit": 1000})");
   const json list = json::parse(jobs.body, nullptr, false);
+  const json* newest = nullptr;
   if (jobs.status == 200)
     for (const json& job : list)
-      if (job["printer"] == call.printer && job["name"] == call.path) return job;
+      if (job["printer"] == call.printer && job["name"] == call.path &&
+          (newest == nullptr || job["id"] > (*newest)["id"]))
+        newest = &job;
+  if (newest != nullptr) return *newest;
   throw Error(Fault::kNoInput, "There is no file of that name", "Upload it again.");
 }
 

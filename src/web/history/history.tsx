@@ -8,7 +8,7 @@ import { Badge, Button, Empty } from '../ui/bits';
 import { complain } from '../ui/notes';
 import { duration, jobBadge, money, sentence, when } from '../words';
 
-const TOLD = 100;   // jobs that the stream tells
+const TOLD = 100;   // ended jobs that the stream tells
 const MORE = 200;   // asked for at a time
 
 export function HistoryView({ jobs }: { jobs: Job[] }) {
@@ -19,7 +19,7 @@ export function HistoryView({ jobs }: { jobs: Job[] }) {
   useEffect(() => setSeen((before) => merged(before, jobs)), [jobs]);
   const ended = known.filter(hasEnded);
   const showOlder = async () => {
-    const older = await jobsBefore(known.at(-1)?.id ?? 1, MORE);
+    const older = await jobsBefore(ended.at(-1)?.id ?? 1, MORE);
     setSeen((before) => merged(before, older));
     setComplete(older.length < MORE);
   };
@@ -39,16 +39,17 @@ export function HistoryView({ jobs }: { jobs: Job[] }) {
       ) : null}
       {ended.length > 0 && shown.length === 0 ? <Empty title="No such job">Nothing that ended is called so.</Empty> : null}
       <ul class="history">{shown.map((job) => <Row key={job.id} job={job} />)}</ul>
-      {!complete && known.length >= TOLD ? (
+      {!complete && ended.length >= TOLD ? (
         <Button onClick={() => void showOlder().catch(complain)}>Show older jobs</Button>
       ) : null}
     </section>
   );
 }
 
-// What was seen before stays when newer jobs push it out of the stream; newest first.
+// What was seen before stays when newer jobs push it out of the stream; what ended last first.
 const merged = (seen: Job[], told: Job[]): Job[] =>
-  [...new Map([...seen, ...told].map((job) => [job.id, job])).values()].sort((a, b) => b.id - a.id);
+  [...new Map([...seen, ...told].map((job) => [job.id, job])).values()]
+    .sort((a, b) => (b.ended_s ?? 0) - (a.ended_s ?? 0) || b.id - a.id);
 
 const fits = (job: Job, words: string): boolean =>
   words.toLowerCase().split(/\s+/).every((word) => `${job.name} ${job.printer} ${job.id}`.toLowerCase().includes(word));

@@ -11,7 +11,7 @@ namespace {
 JobRecord cancelled(Workshop& shop, const std::string& printer, bool pays) {
   shop.drop(printer, "a.stl");
   shop.foreman_->hold(shop.prepare_order().value().job);
-  const std::int64_t id = shop.store_->newest(1).front().id;
+  const std::int64_t id = shop.store_->open_jobs().rbegin()->first;
   PrepareOrder order;
   order.job = id;
   order.out = shop.job(id).folder;

@@ -52,5 +52,31 @@ TEST(History, KeepsEverythingAboutAPrintAcrossARestart) {
   EXPECT_GE(job.at("ended_s"), job.at("sending_s"));
 }
 
+// More jobs than a page holds have ended since: what still waits is told all the same.
+TEST(History, WhatHasNotEndedIsAlwaysToldAndTheRestPageByPage) {
+  Workshop shop;
+  shop.foreman_->pause("real", true);
+  shop.drop("real", "waits.stl");
+  for (int i = 0; i < 7; ++i) {
+    shop.drop("real", "ends.stl");
+    if (i != 3) shop.foreman_->cancel(i + 2);
+  }
+  const auto ids = [&](json request) {
+    request["verb"] = "jobs.list";
+    std::vector<std::int64_t> told;
+    for (const json& job : shop.ask(request).at("result")) told.push_back(job.at("id"));
+    return told;
+  };
+  using Ids = std::vector<std::int64_t>;
+  EXPECT_EQ(ids({{"limit", 2}}), (Ids{5, 1, 8, 7}));
+  EXPECT_EQ(ids({{"limit", 2}, {"before", 7}}), (Ids{6, 4}));
+  EXPECT_EQ(ids({{"limit", 2}, {"before", 4}}), (Ids{3, 2}));
+  EXPECT_EQ(ids({{"limit", 2}, {"before", 2}}), Ids{});
+  shop.foreman_->cancel(1);
+  EXPECT_EQ(ids({{"limit", 2}}), (Ids{5, 1, 8})) << "it ended last";
+  const json state = shop.ask({{"verb", "state"}, {"limit", 1}}).at("result").at("jobs");
+  EXPECT_EQ(state.size(), 2U);
+}
+
 }  // namespace
 }  // namespace packmerger

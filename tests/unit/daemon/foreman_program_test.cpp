@@ -110,7 +110,7 @@ TEST(Programs, AreRefusedAtTheDoorWhereThePrinterTakesNone) {
   EXPECT_EQ(fault("sim", "a.exe"), Fault::kBadInput);
   EXPECT_EQ(fault("nobody", "a.gcode"), Fault::kNoInput);
   EXPECT_TRUE(fs::exists(file)) << "nothing was taken";
-  EXPECT_TRUE(shop.store_->newest(10).empty());
+  EXPECT_FALSE(shop.store_->find(1));
 }
 
 TEST(Programs, TheSameBytesAgainAreRecognised) {

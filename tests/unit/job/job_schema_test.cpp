@@ -9,7 +9,8 @@ namespace packmerger {
 namespace {
 
 constexpr const char* kDropSinceVersion7 =
-    "ALTER TABLE job DROP COLUMN approved; ALTER TABLE job DROP COLUMN doubt;";
+    "DROP INDEX job_ended; ALTER TABLE job DROP COLUMN approved; ALTER TABLE job DROP COLUMN "
+    "doubt;";
 
 constexpr const char* kDropSinceVersion6 = "ALTER TABLE job DROP COLUMN tray_files;";
 

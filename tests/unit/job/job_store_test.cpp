@@ -214,19 +214,26 @@ TEST(JobStore, OpenJobsAreThoseWithSomethingLeftToDo) {
   job.filing_done = true;
   store.save(job);
   EXPECT_TRUE(store.open_jobs().empty());
-  EXPECT_EQ(store.newest(10).size(), 1U);
+  EXPECT_EQ(store.newest_ended(10).size(), 1U);
 }
 
 TEST(JobStore, OlderJobsAreReachedPageByPage) {
   const TemporaryFolder folder;
   JobStore store(folder.path() / "jobs.sqlite");
-  std::vector<std::int64_t> all;
-  for (int i = 0; i < 7; ++i) all.insert(all.begin(), store.add(sample()).id);
+  const std::vector<std::int64_t> order = {2, 7, 1, 3, 6, 4};  // job 5 has not ended
+  for (int i = 0; i < 7; ++i) store.add(sample());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    JobRecord job = store.find(order[i]).value();
+    job.state = JobState::kFailed;
+    job.ended_s = 1000 - static_cast<double>(i / 2);  // two at a time
+    store.save(job);
+  }
   std::vector<std::int64_t> told;
-  for (std::vector<JobRecord> page = store.newest(3); !page.empty();
-       page = store.newest(3, page.back().id))
+  for (std::vector<JobRecord> page = store.newest_ended(3); !page.empty();
+       page = store.newest_ended(3, page.back().id))
     for (const JobRecord& job : page) told.push_back(job.id);
-  EXPECT_EQ(told, all);
+  EXPECT_EQ(told, (std::vector<std::int64_t>{7, 2, 3, 1, 6, 4}));
+  EXPECT_EQ(store.newest_ended(9, 5).size(), 4U) << "older than one that has not ended";
 }
 
 TEST(JobStore, RecognisesTheSameBytes) {
