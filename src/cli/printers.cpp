@@ -49,6 +49,8 @@ std::vector<std::string> row_of(const json& printer) {
   const json print = printer.value("print", json());
   if (print.is_object()) doing += ": " + print_text(print);
   if (printer.value("paused", false)) doing += ", paused";
+  if (const std::string trouble = text_of(printer, "trouble"); !trouble.empty())
+    doing += "; " + trouble;
   const json connected = printer.value("connected", json());
   const std::string port = text_of(printer, "port");
   return {text_of(printer, "name"),

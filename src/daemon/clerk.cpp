@@ -1,3 +1,5 @@
+#include "daemon/clerk.h"
+
 #include <unistd.h>
 
 #include <cerrno>
@@ -6,10 +8,29 @@
 
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
-#include "daemon/worker.h"
 
 namespace packmerger {
 namespace {
+
+void remove_if_same(const fs::path& original, const fs::path& copy) {
+  std::error_code failed;
+  if (!is_taken(original)) return;
+  const bool same = fs::file_size(original, failed) == fs::file_size(copy, failed) && !failed &&
+                    sha256_hex_of_file(original) == sha256_hex_of_file(copy);
+  if (same) fs::remove(original, failed);
+}
+
+// The model first; its settings follow it, unless they were copied before it.
+ClaimOutcome take(const ClaimOrder& order) {
+  if (!is_taken(order.to) && rename_new(order.from, order.to) == Moved::kOtherFileSystem)
+    return ClaimOutcome::kOtherFileSystem;
+  const fs::path settings = settings_beside(order.to);
+  if (order.with_settings && !is_taken(settings) && has_settings_beside(order.from))
+    rename_new(settings_beside(order.from), settings);
+  if (order.by_copy) remove_if_same(order.from, order.to);
+  if (order.by_copy && order.with_settings) remove_if_same(settings_beside(order.from), settings);
+  return ClaimOutcome::kTaken;
+}
 
 void fetch_settings(const FetchOrder& order) {
   const fs::path from = settings_beside(order.from);
@@ -18,7 +39,7 @@ void fetch_settings(const FetchOrder& order) {
 }
 
 // A copy whose original cannot be removed is taken back: the file would be found again.
-void fetch(const FetchOrder& order) {
+void copy_here(const FetchOrder& order) {
   fetch_settings(order);
   copy_file_whole(order.from, order.to);
   if (order.keep) return;
@@ -35,7 +56,7 @@ void fetch(const FetchOrder& order) {
 }
 
 // The model first: where its name is taken by now, nothing of it may have been put there.
-void file(const FileOrder& order) {
+void put_away(const FileOrder& order) {
   if (fs::exists(order.from)) move_new(order.from, order.to);
   const fs::path settings = settings_beside(order.from);
   if (order.with_settings && is_taken(settings)) {
@@ -62,13 +83,27 @@ std::optional<Failure> failure_of(const std::function<void()>& work) {
 
 }  // namespace
 
-void run_clerk(Queue<ClerkOrder>& orders, Queue<Event>& events) {
-  while (const std::optional<ClerkOrder> order = orders.pop()) {
-    if (const auto* wanted = std::get_if<FetchOrder>(&*order))
-      events.push(Fetched{wanted->job, failure_of([&] { fetch(*wanted); })});
-    else if (const auto* done = std::get_if<FileOrder>(&*order))
-      events.push(Filed{done->job, failure_of([&] { file(*done); })});
+Claimed claim(const ClaimOrder& order) {
+  Claimed claimed{order.job, ClaimOutcome::kFailed, {}};
+  if (const auto failure = failure_of([&] { claimed.outcome = take(order); })) {
+    claimed.failure = *failure;
+    if (failure->fault == Fault::kNoInput) claimed.outcome = ClaimOutcome::kGone;
   }
+  return claimed;
+}
+
+Fetched fetch(const FetchOrder& order) {
+  return {order.job, failure_of([&] { copy_here(order); })};
+}
+
+Placed place(const PlaceOrder& order) {
+  Placed placed{order.job, {}, {}};
+  placed.failure = failure_of([&] { placed.to = free_path(order.folder, order.name); });
+  return placed;
+}
+
+Filed file(const FileOrder& order) {
+  return {order.job, failure_of([&] { put_away(order); })};
 }
 
 }  // namespace packmerger

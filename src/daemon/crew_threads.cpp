@@ -1,7 +1,11 @@
 #include "daemon/crew_threads.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <limits>
 
+#include "base/clock.h"
 #include "daemon/worker.h"
 #include "firmware_io/hotplug.h"
 
@@ -9,6 +13,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kDevicesRescan_s = 5;
+constexpr double kPatience_s = 3;  // at the end, with whoever works at a folder
 
 void tell_devices(const std::atomic<bool>& stop, Queue<Event>& events) {
   watch_devices(stop, kDevicesRescan_s,
@@ -25,52 +30,86 @@ void tell_devices(const std::atomic<bool>& stop, Queue<Event>& events) {
 CrewThreads::CrewThreads(const std::vector<PrinterConfig>& printers, Crew& crew,
                          Queue<Event>& events)
     : crew_(crew), events_(events) {
-  others_.push_back(started([&] { run_worker(crew.worker, events); }));
-  others_.push_back(started([&] { run_worker(crew.checker, events); }));
-  others_.push_back(started([&] { run_clerk(crew.clerk, events); }));
-  others_.push_back(started([&] { tell_devices(stop_, events); }));
+  start(others_.emplace_back(), [&] { run_worker(crew.worker, events); });
+  start(others_.emplace_back(), [&] { run_worker(crew.checker, events); });
+  start(others_.emplace_back(), [&] { tell_devices(stop_, events); });
   for (const PrinterConfig& printer : printers) start_sender(printer);
+  start_clerks();
 }
 
+// Where the start or the loop failed while a disk hangs, nothing else ends.
 CrewThreads::~CrewThreads() {
-  finish([] {});
+  if (!finish([] {}).empty()) std::_Exit(static_cast<int>(Fault::kInternal));
 }
 
-std::thread CrewThreads::started(std::function<void()> work) {
-  ++running_;
-  return std::thread([this, work = std::move(work)] {
+void CrewThreads::start(Member& member, std::function<void()> work) {
+  member.thread = std::thread([&member, work = std::move(work)] {
     work();
-    --running_;
+    member.ended = true;
   });
 }
 
 void CrewThreads::start_sender(const PrinterConfig& printer) {
   Queue<SendOrder>& orders = crew_.senders[printer.name];
-  senders_[printer.name] =
-      started([this, &orders, printer] { run_sender(orders, events_, printer); });
+  Member& sender = senders_[printer.name];
+  if (printer.hands_over()) sender.folder = printer.handoff_folder.string();
+  start(sender, [this, &orders, printer] { run_sender(orders, events_, printer); });
 }
 
 void CrewThreads::end_sender(const std::string& printer) {
   crew_.senders.at(printer).close();
-  senders_.at(printer).join();
+  senders_.at(printer).thread.join();
   senders_.erase(printer);
   crew_.senders.erase(printer);
 }
 
-void CrewThreads::finish(const std::function<void()>& meanwhile) {
-  stop_ = true;
-  crew_.worker.close();
-  crew_.checker.close();
-  crew_.clerk.close();
-  for (auto& [name, orders] : crew_.senders) orders.close();
-  while (running_ > 0) {
+void CrewThreads::start_clerks() {
+  for (auto& item : crew_.folders) {
+    const std::filesystem::path& folder = item.first;
+    ClerkDesk& desk = item.second;
+    const auto [found, is_new] = clerks_.try_emplace(folder);
+    if (!is_new) continue;
+    found->second.folder = folder.string();
+    start(found->second, [this, folder, &desk] { FolderClerk(folder, desk, events_).run(); });
+  }
+}
+
+void CrewThreads::wait(const std::function<bool(const Member&)>& for_whom, double until_s,
+                       const std::function<void()>& meanwhile) {
+  const auto works = [&](const Member& member) { return for_whom(member) && !member.ended; };
+  const auto any_works = [&] {
+    return std::any_of(others_.begin(), others_.end(), works) ||
+           std::any_of(senders_.begin(), senders_.end(),
+                       [&](const auto& item) { return works(item.second); }) ||
+           std::any_of(clerks_.begin(), clerks_.end(),
+                       [&](const auto& item) { return works(item.second); });
+  };
+  while (any_works() && steady_now_s() < until_s) {
     meanwhile();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  for (std::thread& thread : others_)
-    if (thread.joinable()) thread.join();
-  for (auto& [name, thread] : senders_)
-    if (thread.joinable()) thread.join();
+}
+
+std::vector<std::string> CrewThreads::finish(const std::function<void()>& meanwhile) {
+  stop_ = true;
+  crew_.worker.close();
+  crew_.checker.close();
+  for (auto& [name, orders] : crew_.senders) orders.close();
+  for (auto& [folder, desk] : crew_.folders) desk.orders.close();
+  wait([](const Member& member) { return member.folder.empty(); },
+       std::numeric_limits<double>::infinity(), meanwhile);
+  wait([](const Member&) { return true; }, steady_now_s() + kPatience_s, meanwhile);
+  std::vector<std::string> left;
+  const auto let_go = [&](Member& member) {
+    if (!member.ended)
+      left.push_back(member.folder);
+    else if (member.thread.joinable())
+      member.thread.join();
+  };
+  for (Member& member : others_) let_go(member);
+  for (auto& [name, sender] : senders_) let_go(sender);
+  for (auto& [folder, clerk] : clerks_) let_go(clerk);
+  return left;
 }
 
 }  // namespace packmerger

@@ -1,9 +1,11 @@
-// The threads that work for the loop: those of worker.h, a sender for each printer among them, and
-// one that looks for devices. Only the loop's thread uses it.
+// The threads that work for the loop: those of worker.h, a sender for each printer among them, a
+// clerk for each folder, and one that looks for devices. Only the loop's thread uses it.
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
+#include <list>
 #include <map>
 #include <string>
 #include <thread>
@@ -26,19 +28,31 @@ class CrewThreads {
   // Waits for a sender that has nothing to send: it ends at once.
   void end_sender(const std::string& printer);
 
-  // Ends everybody's orders and waits. meanwhile is called again and again until the last has
-  // ended.
-  void finish(const std::function<void()>& meanwhile);
+  // Folders that got orders since the last call get their clerks.
+  void start_clerks();
+
+  // Ends everybody's orders and waits; meanwhile is called again and again. Whoever works at a
+  // folder is waited for some seconds only, because its disk may hang. Returns the folders of those
+  // that have not ended: then the process must end without returning to what they use.
+  std::vector<std::string> finish(const std::function<void()>& meanwhile);
 
  private:
-  std::thread started(std::function<void()> work);
+  struct Member {
+    std::string folder = {};  // where it works at one whose disk may hang
+    std::atomic<bool> ended{false};
+    std::thread thread = {};
+  };
+
+  void start(Member& member, std::function<void()> work);
+  void wait(const std::function<bool(const Member&)>& for_whom, double until_s,
+            const std::function<void()>& meanwhile);
 
   Crew& crew_;
   Queue<Event>& events_;
-  std::atomic<int> running_{0};
   std::atomic<bool> stop_{false};  // of what has no orders
-  std::vector<std::thread> others_;
-  std::map<std::string, std::thread> senders_;  // by printer
+  std::list<Member> others_;
+  std::map<std::string, Member> senders_;           // by printer
+  std::map<std::filesystem::path, Member> clerks_;  // by folder
 };
 
 }  // namespace packmerger

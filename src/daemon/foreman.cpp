@@ -3,29 +3,15 @@
 #include <algorithm>
 #include <chrono>
 
+#include "daemon/backoff.h"
 #include "daemon/job_view.h"
-#include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/waits.h"
 
 namespace packmerger {
 namespace {
 
-constexpr int kMostDoublings = 4;  // of retry_s
-constexpr int kMostPrints = 100;   // that a correction is learned from, the newest
-
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
-void remove_if_same(const fs::path& original, const fs::path& copy) {
-  std::error_code failed;
-  if (!is_there(original)) return;
-  const bool same = fs::file_size(original, failed) == fs::file_size(copy, failed) && !failed &&
-                    sha256_hex_of_file(original) == sha256_hex_of_file(copy);
-  if (same) fs::remove(original, failed);
-}
+constexpr int kMostPrints = 100;  // that a correction is learned from, the newest
 
 // A folder's name for people: the model's name and the job's number.
 std::string handoff_name(const JobRecord& job) {
@@ -87,21 +73,25 @@ void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
 
 void Foreman::recover() {
   std::map<std::int64_t, JobRecord> open = store_.open_jobs();  // which the store then changes
-  for (auto& [id, job] : open) {
-    if (job.at_once) drop_order(job);
-    if (job.state == JobState::kClaiming) finish_claim(job);
-    if (job.state != JobState::kSending) continue;
-    const PrinterConfig* printer = config_.printer(job.printer);
-    if (printer != nullptr && printer->hands_over()) {
-      job.state = JobState::kApproved;  // handing over twice gives the same folder
-      store_.save(job, "the daemon was interrupted; handing over again");
-    } else {
-      note_told(job);
-      end(job, JobState::kFailed, with_told(job, "interrupted while printing"),
-          "See what the printer did, clear its bed, and print again with packmerger jobs again " +
-              std::to_string(job.id) + ".");
-    }
+  for (auto& item : open) {
+    JobRecord& job = item.second;
+    try_for(job.id, [&] { recover(job); });
   }
+}
+
+void Foreman::recover(JobRecord& job) {
+  if (job.at_once) drop_order(job);
+  if (job.state == JobState::kClaiming) finish_claim(job);
+  if (job.state != JobState::kSending) return;
+  const PrinterConfig* printer = config_.printer(job.printer);
+  if (printer != nullptr && printer->hands_over()) {
+    job.state = JobState::kApproved;  // handing over twice gives the same folder
+    return store_.save(job, "the daemon was interrupted; handing over again");
+  }
+  note_told(job);
+  end(job, JobState::kFailed, with_told(job, "interrupted while printing"),
+      "See what the printer did, clear its bed, and print again with packmerger jobs again " +
+          std::to_string(job.id) + ".");
 }
 
 // Who wanted a print at once meant the printer as it stood then. What lies on it when a daemon
@@ -117,94 +107,41 @@ void Foreman::drop_order(JobRecord& job) {
   store_.save(job, "the daemon was started again: not printed by an order of before");
 }
 
-bool Foreman::is_refused(const fs::path& file) {
-  std::erase_if(refused_, [&](const auto& item) { return item.second <= now_s_; });
-  return refused_.contains(file);
-}
-
-bool Foreman::arrived(const PrinterConfig& printer, const fs::path& file) {
-  if (stopping_ || is_refused(file)) return false;
-  if (std::any_of(live_.begin(), live_.end(),
-                  [&](const auto& item) { return item.second.fetching_from == file; }))
-    return true;
-  return claim(begun(printer, file, has_settings_beside(file)), file);
-}
-
-JobRecord Foreman::begun(const PrinterConfig& printer, const fs::path& origin, bool with_settings) {
-  JobRecord job;
-  job.printer = printer.name;
-  job.name = origin.filename().string();
-  job.origin = origin.string();
-  job.with_settings = with_settings;
-  job.received_s = wall_clock_s();
-  job = store_.add(job);
-  job.input = (job_path(job.id) / "input" / job.name).string();
-  store_.save(job);
-  return job;
-}
-
-bool Foreman::claim(JobRecord job, const fs::path& file) {
+// What goes wrong with one job fails that job, and not the daemon. Only what the database could
+// not be told now is thrown. False: it went wrong.
+bool Foreman::try_for(std::int64_t job, const std::function<void()>& work) {
   try {
-    if (rename_new(file, job.input) == Moved::kOtherFileSystem) {
-      job.by_copy = true;
-      store_.save(job);
-      live_[job.id].fetching_from = file;
-      crew_.clerk.push(FetchOrder{job.id, file, job.input, job.with_settings});
-    } else {
-      finish_claim(job);
-    }
+    work();
     return true;
   } catch (const Error& error) {
-    // what the database could not be told, advance() sees on the disk
-    if (error.fault() != Fault::kNoInput) say(job, error.what() + (" " + error.hint()));
-    if (!is_there(job.input)) forget(job);
-    return error.fault() == Fault::kNoInput;
+    if (error.fault() == Fault::kCannotWrite || error.fault() == Fault::kIo ||
+        error.fault() == Fault::kBusy)
+      throw;
+    fail(job, error.what(), error.hint());
+  } catch (const std::exception& error) {
+    fail(job, error.what(), "");
   }
+  return false;
 }
 
-void Foreman::forget(const JobRecord& job) {
-  std::error_code ignored;
-  fs::remove_all(job_path(job.id), ignored);
-  store_.forget(job.id);
-  live_.erase(job.id);
-}
-
-// What died while claiming: the file is here, whole, or it never left its place.
-void Foreman::finish_claim(JobRecord job) {
-  if (job.input.empty() || !is_there(job.input)) return forget(job);
-  if (!take_settings(job)) return;
-  remove_copied_original(job);
-  job.state = JobState::kReceived;
-  store_.save(job);
-  say(job, "received");
-}
-
-// The settings file follows its model; one that a copied model came with was copied before it.
-// False where that cannot be done now.
-bool Foreman::take_settings(const JobRecord& job) {
-  if (!job.with_settings || has_settings_beside(job.input) || !has_settings_beside(job.origin))
-    return true;
-  LiveJob& live = live_[job.id];
-  if (now_s_ < live.retry_s) return false;
-  try {
-    rename_new(settings_beside(job.origin), settings_beside(job.input));
-    return true;
-  } catch (const Error& error) {
-    say(job, error.what() + (" " + error.hint()));
-    live.retry_s = retry_at(live.failures++);
-    return false;
+void Foreman::fail(std::int64_t id, const std::string& why, const std::string& hint) {
+  const std::string what = "It could not be gone on with: " + printable(why);
+  std::optional<JobRecord> job = store_.find(id);
+  if (!job) return log_(what);
+  if (has_ended(job->state)) return hold_up(*job, what);
+  if (const LiveJob* known = live(id); known != nullptr) {
+    if (known->cancel_prepare) *known->cancel_prepare = true;
+    if (known->control) known->control->cancel();
   }
-}
-
-void Foreman::remove_copied_original(const JobRecord& job) const {
-  if (!job.by_copy || job.again_of != 0) return;
-  remove_if_same(job.origin, job.input);
-  if (job.with_settings) remove_if_same(settings_beside(job.origin), settings_beside(job.input));
+  if (job->state == JobState::kClaiming) return hold_up(*job, what);
+  end(*job, JobState::kFailed, what,
+      hint.empty() ? "Please report this as a bug, with the daemon's messages." : hint);
 }
 
 void Foreman::advance(double now_s) {
   now_s_ = now_s;
   notice_printers();
+  notice_folders();
   const std::map<std::int64_t, JobRecord>& open = store_.open_jobs();  // a step changes it
   std::vector<std::int64_t> jobs;
   for (const auto& [id, job] : open)
@@ -213,7 +150,7 @@ void Foreman::advance(double now_s) {
   std::stable_partition(jobs.begin(), jobs.end(),
                         [&](std::int64_t id) { return open.at(id).next_tray > 1; });
   for (const std::int64_t id : jobs)
-    if (const auto job = open.find(id); job != open.end()) step(job->second);
+    if (const auto job = open.find(id); job != open.end()) try_for(id, [&] { step(job->second); });
   drop_idle_live_jobs();
 }
 
@@ -227,14 +164,13 @@ bool Foreman::may_step(const JobRecord& job) const {
 void Foreman::drop_idle_live_jobs() {
   std::erase_if(live_, [&](const auto& item) {
     const LiveJob& live = item.second;
-    const bool idle =
-        !live.cancel_prepare && !live.control && !live.with_clerk && live.fetching_from.empty();
+    const bool idle = !live.cancel_prepare && !live.control && !live.with_clerk;
     return idle && !store_.open_jobs().contains(item.first);
   });
 }
 
 double Foreman::retry_at(int failures) const {
-  return now_s_ + config_.retry_s * (1 << std::min(failures, kMostDoublings));
+  return now_s_ + backoff_s(config_.retry_s, failures);
 }
 
 void Foreman::step(const JobRecord& job) {
@@ -242,8 +178,7 @@ void Foreman::step(const JobRecord& job) {
   if (stopping_) return;
   switch (job.state) {
     case JobState::kClaiming:
-      if (live(job.id) == nullptr || live(job.id)->fetching_from.empty()) finish_claim(job);
-      return;
+      return finish_claim(job);
     case JobState::kReceived:
     case JobState::kPreparing:
       return start_preparing(job);
@@ -280,24 +215,6 @@ void Foreman::start_sending(const JobRecord& approved) {
       .push({job.id, job.folder, job.next_tray, handoff_name(job), told_file(job), live.control,
              job.tray_files});
   say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
-}
-
-// The place is recorded before the file is moved there, so that an interrupted move is finished.
-void Foreman::file_away(const JobRecord& ended) {
-  LiveJob& live = live_[ended.id];
-  if (live.with_clerk || preparing_.contains(ended.id) || now_s_ < live.retry_s) return;
-  JobRecord job = ended;
-  const bool good = job.state == JobState::kDone || job.state == JobState::kHandedOver;
-  if (job.filed.empty() || (is_there(job.input) && is_there(job.filed))) {
-    const fs::path base = fs::path(job.origin).parent_path();
-    job.filed = free_path(base / (good ? "done" : "failed"), job.name).string();
-    store_.save(job);
-  }
-  live.with_clerk = true;
-  crew_.clerk.push(FileOrder{job.id, job.input, job.filed, job.with_settings,
-                             job.folder.empty() ? fs::path() : job.folder / fs::path("preview.png"),
-                             note_beside(job.filed, good ? ".result.json" : ".reason.txt"),
-                             good ? result_note(job) : reason_note(job)});
 }
 
 void Foreman::stop() {

@@ -12,6 +12,7 @@
 
 #include "daemon/choose_printer.h"
 #include "daemon/config.h"
+#include "daemon/folder_clerk.h"
 #include "daemon/messages.h"
 #include "job/job_store.h"
 
@@ -20,13 +21,13 @@ namespace packmerger {
 // Unix time.
 double wall_clock_s();
 
-// The queues through which the threads of worker.h get their orders. Programs have a worker of
+// The queues through which the other threads get their orders. Programs have a worker of
 // their own: they are checked in seconds, and do not wait behind an hour of packing.
 struct Crew {
   Queue<PrepareOrder> worker;
   Queue<PrepareOrder> checker;
-  Queue<ClerkOrder> clerk;
-  std::map<std::string, Queue<SendOrder>> senders;  // by printer
+  std::map<std::filesystem::path, ClerkDesk> folders;  // watched ones, and those jobs came from
+  std::map<std::string, Queue<SendOrder>> senders;     // by printer
 
   explicit Crew(const DaemonConfig& config) {
     for (const PrinterConfig& printer : config.printers) senders[printer.name];
@@ -37,14 +38,14 @@ struct Crew {
 struct LiveJob {
   std::shared_ptr<std::atomic<bool>> cancel_prepare;  // while it is with the worker
   std::shared_ptr<PrintControl> control;              // while it is with a sender
-  std::filesystem::path fetching_from;                // while the clerk copies it
-  bool with_clerk = false;                            // while the clerk files it
+  bool with_clerk = false;                            // while a clerk takes or files it
   std::string stage;                                  // of preparing
   double fraction = 0;  // of that stage, or of the tray that is printed
   PrintReport print;
   bool ended_by_stop = false;  // its print was cancelled by the daemon's end, and by nobody before
   int failures = 0;            // to start this tray, or to file the model
   double retry_s = 0;          // not before, on the clock of advance()
+  std::string trouble;         // why its file could not be taken or filed so far; empty: nothing
 };
 
 // Which of the two threads has a job.
@@ -60,10 +61,6 @@ class Foreman {
   // half-prepared jobs back to be prepared, and lets no order of before start a print.
   void recover();
 
-  // A file in the printer's watched folder is whole. Takes it as a job: recorded, then moved into
-  // the state folder. False when it cannot be taken now; it then stays where it is.
-  bool arrived(const PrinterConfig& printer, const std::filesystem::path& file);
-
   // The one door for files that do not lie in a watched folder: takes upload.file, which is
   // elsewhere in the state folder, as if it had been put into the printer's folder under its name.
   // Throws Error{kNoInput} for a printer that is not there, Error{kBadInput} for a name that
@@ -72,6 +69,7 @@ class Foreman {
   JobRecord uploaded(const UploadedJob& upload);
 
   // Throws Error when the database cannot be written; the event then has to be given again.
+  // Whatever else goes wrong fails the event's job.
   void handle(const Event& event);
 
   // Starts whatever can be started. now_s: a clock that never goes back.
@@ -117,6 +115,8 @@ class Foreman {
   // Whether the printer is there, as far as that is told without disturbing it: of one behind a
   // serial server its last job tells. Nothing: not known, or it is handed its jobs.
   std::optional<bool> connected(const PrinterConfig& printer) const;
+  // Why files in the printer's watched folder cannot be taken now; empty: they can.
+  std::string folder_trouble(const PrinterConfig& printer) const;
 
  private:
   std::filesystem::path job_path(std::int64_t id) const;
@@ -132,20 +132,35 @@ class Foreman {
   void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
            const std::string& note = {}, const PrinterRecord* printer = nullptr);
 
+  void recover(JobRecord& job);
+  bool try_for(std::int64_t job, const std::function<void()>& work);
+  void fail(std::int64_t job, const std::string& why, const std::string& hint);
+  void let_worker_go(std::int64_t job);
+  void let_sender_go(std::int64_t job);
+
   JobRecord begun(const PrinterConfig& printer, const std::filesystem::path& origin,
                   bool with_settings);
-  bool claim(JobRecord job, const std::filesystem::path& file);
+  Queue<ClerkOrder>& clerk_of(const JobRecord& job);
+  void claim(const JobRecord& job);
+  bool take_upload(const JobRecord& job, const std::filesystem::path& file);
+  void settle(JobRecord job);
   void forget(const JobRecord& job);
-  void finish_claim(JobRecord job);
-  bool take_settings(const JobRecord& job);
-  void remove_copied_original(const JobRecord& job) const;
+  void finish_claim(const JobRecord& job);
+  void hold_up(const JobRecord& job, const std::string& trouble);
+  FileOrder file_order(const JobRecord& job) const;
+  void notice_folders();
 
   void on(const PrepareProgress& event);
   void on(const Hashed& event);
   void on(const Compared& event);
   void on(const Prepared& event);
   void on(const PrepareFailed& event);
+  void on(const Arrived& event);
+  void on(const FileIgnored& event);
+  void on(const FolderTold& event);
+  void on(const Claimed& event);
   void on(const Fetched& event);
+  void on(const Placed& event);
   void on(const Filed& event);
   void on(const SendProgress& event);
   void on(const SendEnded& event);
@@ -162,7 +177,6 @@ class Foreman {
   JobRecord prepare_again(const JobRecord& old);
 
   double retry_at(int failures) const;
-  bool is_refused(const std::filesystem::path& file);
   void drop_idle_live_jobs();
   void step(const JobRecord& job);
   void check_takes(const PrinterConfig& printer, const std::string& name) const;
@@ -187,14 +201,15 @@ class Foreman {
   Crew& crew_;
   Log log_;
   std::map<std::int64_t, LiveJob> live_;
-  std::map<std::int64_t, Preparer> preparing_;       // the jobs with the workers, one each
-  std::map<std::string, std::int64_t> sending_;      // the job with each printer's sender
-  std::map<std::filesystem::path, double> refused_;  // files that could not be copied; until when
-  std::optional<Devices> devices_;                   // as last told
-  std::map<std::string, bool> reached_;              // printers behind serial servers, at last
-  std::map<std::string, bool> there_;                // printers, when they were last looked at
-  bool looked_ = false;                              // what is connected was told once
-  std::map<std::string, std::string> advised_;       // printers, the port each was advised on
+  std::map<std::int64_t, Preparer> preparing_;          // the jobs with the workers, one each
+  std::map<std::string, std::int64_t> sending_;         // the job with each printer's sender
+  std::map<std::string, std::string> folder_troubles_;  // by printer, as their clerks told
+  std::map<std::string, std::string> folder_told_;      // by printer, what was last logged of them
+  std::optional<Devices> devices_;                      // as last told
+  std::map<std::string, bool> reached_;                 // printers behind serial servers, at last
+  std::map<std::string, bool> there_;                   // printers, when they were last looked at
+  bool looked_ = false;                                 // what is connected was told once
+  std::map<std::string, std::string> advised_;          // printers, the port each was advised on
   // By printer and source, learned when first asked for and forgotten when a print ends.
   mutable std::map<std::pair<std::string, std::string>, std::optional<Correction>> corrections_;
   double now_s_ = 0;

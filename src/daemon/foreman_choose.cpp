@@ -83,8 +83,7 @@ void Foreman::start_comparing(JobRecord job, const PrinterConfig& wish) {
 }
 
 void Foreman::on(const Compared& event) {
-  live_[event.job].cancel_prepare.reset();
-  preparing_.erase(event.job);
+  let_worker_go(event.job);
   std::optional<JobRecord> job = store_.find(event.job);
   if (!job || job->state != JobState::kPreparing) return;
   const PrinterConfig* wish = config_.printer(job->printer);

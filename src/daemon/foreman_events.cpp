@@ -10,10 +10,39 @@ namespace {
 
 std::string sentence(const Failure& failure) { return printable(failure.what); }
 
+// 0: it is about none.
+std::int64_t job_of(const Event& event) {
+  return std::visit(
+      [](const auto& each) -> std::int64_t {
+        if constexpr (requires { each.job; }) return each.job;
+        return 0;
+      },
+      event);
+}
+
 }  // namespace
 
 void Foreman::handle(const Event& event) {
-  std::visit([&](const auto& each) { on(each); }, event);
+  const bool is_done =
+      try_for(job_of(event), [&] { std::visit([&](const auto& each) { on(each); }, event); });
+  if (is_done) return;
+  // whoever had the job is done with it all the same
+  if (const auto* sent = std::get_if<SendEnded>(&event)) let_sender_go(sent->job);
+  if (std::holds_alternative<Prepared>(event) || std::holds_alternative<PrepareFailed>(event) ||
+      std::holds_alternative<Compared>(event))
+    let_worker_go(job_of(event));
+  live_[job_of(event)].with_clerk = false;
+}
+
+void Foreman::let_worker_go(std::int64_t id) {
+  live_[id].cancel_prepare.reset();
+  preparing_.erase(id);
+}
+
+void Foreman::let_sender_go(std::int64_t id) {
+  live_[id].control.reset();
+  live_[id].print = {};
+  std::erase_if(sending_, [&](const auto& item) { return item.second == id; });
 }
 
 void Foreman::on(const PrepareProgress& event) {
@@ -53,8 +82,7 @@ void Foreman::on(const Prepared& event) {
     store_.save(*job, job->reason);
     say(*job, "ready");
   }
-  live_[event.job].cancel_prepare.reset();
-  preparing_.erase(event.job);
+  let_worker_go(event.job);
 }
 
 void Foreman::on(const PrepareFailed& event) {
@@ -62,46 +90,7 @@ void Foreman::on(const PrepareFailed& event) {
   const bool stopped = stopping_ && event.failure.fault == Fault::kInterrupted;
   if (job && job->state == JobState::kPreparing && !stopped)
     end(*job, JobState::kFailed, sentence(event.failure), event.failure.hint);
-  live_[event.job].cancel_prepare.reset();
-  preparing_.erase(event.job);
-}
-
-void Foreman::on(const Fetched& event) {
-  std::optional<JobRecord> job = store_.find(event.job);
-  if (job && job->state == JobState::kClaiming) {
-    if (event.failure && job->again_of != 0) {
-      job->input.clear();
-      end(*job, JobState::kFailed, sentence(*event.failure), event.failure->hint);
-    } else {
-      if (event.failure) {
-        say(*job, sentence(*event.failure) + ". " + event.failure->hint);
-        refused_[job->origin] = retry_at(0);
-      }
-      finish_claim(*job);
-    }
-  }
-  live_.erase(event.job);
-}
-
-void Foreman::on(const Filed& event) {
-  std::optional<JobRecord> job = store_.find(event.job);
-  LiveJob& live = live_[event.job];
-  if (event.failure) {
-    if (event.failure->fault == Fault::kBusy && job) {
-      job->filed.clear();
-      store_.save(*job);
-    }
-    if (job) say(*job, "not yet filed: " + sentence(*event.failure) + ". " + event.failure->hint);
-    live.retry_s = retry_at(live.failures++);
-    live.with_clerk = false;
-    return;
-  }
-  if (job) {
-    job->input.clear();
-    job->filing_done = true;
-    store_.save(*job);
-  }
-  live_.erase(event.job);
+  let_worker_go(event.job);
 }
 
 void Foreman::on(const SendProgress& event) {
@@ -118,9 +107,7 @@ void Foreman::on(const SendEnded& event) {
   if (!job) return;
   note_reached(*job, event);
   if (job->state == JobState::kSending) sent(*job, event);
-  live_[event.job].control.reset();
-  live_[event.job].print = {};
-  sending_.erase(job->printer);
+  let_sender_go(event.job);
 }
 
 // How far the tray's print was told to go, as its sender wrote it down.

@@ -53,8 +53,7 @@ JobRecord Foreman::uploaded(const UploadedJob& upload) {
   job.held = upload.held;
   if (job.at_once) store_.save(job, "to be printed as soon as it is ready");
   if (job.held) store_.save(job, "to be printed when somebody approves it");
-  claim(job, upload.file);
-  if (const std::optional<JobRecord> taken = store_.find(job.id)) return *taken;
+  if (take_upload(job, upload.file)) return get(job.id);
   throw Error(Fault::kBusy, "The file cannot be taken now", "Look into the daemon's messages.");
 }
 
@@ -136,12 +135,12 @@ JobRecord Foreman::again(std::int64_t id) {
     senseless(old, " and has not ended", "Wait for its end, or cancel it first.");
   get_printer(old.printer);
   if (has_program(old)) return print_again(old);
-  std::error_code ignored;
-  if (old.filing_done && fs::exists(old.filed, ignored)) return prepare_again(old);
-  throw Error(
-      Fault::kNoInput,
-      "Neither the program nor the model of job " + std::to_string(id) + " is there any more",
-      "Drop the model into the watched folder again.");
+  if (!old.filing_done)  // whether the file is still there, its clerk finds out
+    throw Error(
+        Fault::kNoInput,
+        "Neither the program nor the model of job " + std::to_string(id) + " is there any more",
+        "Drop the model into the watched folder again.");
+  return prepare_again(old);
 }
 
 // Recorded as ready first: a daemon that dies here leaves a job that asks.
@@ -162,12 +161,11 @@ JobRecord Foreman::prepare_again(const JobRecord& old) {
   JobRecord job = like(old);
   job.origin = old.origin;
   job.by_copy = true;
-  job.with_settings = has_settings_beside(old.filed);
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job, "the file of job " + std::to_string(old.id) + " again");
-  live_[job.id].fetching_from = old.filed;
-  crew_.clerk.push(FetchOrder{job.id, old.filed, job.input, job.with_settings, true});
+  live_[job.id].with_clerk = true;
+  clerk_of(job).push(FetchOrder{job.id, old.filed, job.input, true, true});
   say(job, "job " + std::to_string(old.id) + " again");
   return job;
 }

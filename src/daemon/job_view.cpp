@@ -56,9 +56,7 @@ std::string sending_text(const JobRecord& job, const LiveJob* live) {
   return text;
 }
 
-// One short phrase for people: what the job does or waits for.
-std::string status_text(const Foreman& foreman, const JobRecord& job) {
-  const LiveJob* live = foreman.live(job.id);
+std::string state_text(const Foreman& foreman, const JobRecord& job, const LiveJob* live) {
   switch (job.state) {
     case JobState::kClaiming:
       return "being taken";
@@ -82,6 +80,13 @@ std::string status_text(const Foreman& foreman, const JobRecord& job) {
       return job.reason;
   }
   return {};
+}
+
+// One short phrase for people: what the job does or waits for, and what is wrong with its file.
+std::string status_text(const Foreman& foreman, const JobRecord& job) {
+  const LiveJob* live = foreman.live(job.id);
+  const std::string text = state_text(foreman, job, live);
+  return live == nullptr || live->trouble.empty() ? text : text + " (" + live->trouble + ")";
 }
 
 json heaters_view(const PrintReport& print) {
@@ -216,6 +221,7 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"connected", connected ? json(*connected) : json()},
           {"bed", bed},
           {"paused", record.paused},
+          {"trouble", or_null(foreman.folder_trouble(printer))},
           {"corrections", corrections_view(foreman, printer)},
           {"job", sending == 0 ? json() : json(sending)},
           {"print", print_view(foreman.live(sending), unit_of(&printer))}};

@@ -41,13 +41,33 @@ struct PrepareOrder {
   std::shared_ptr<std::atomic<bool>> cancel;
 };
 
-// To the clerk, which moves files without keeping the loop waiting.
+// To the clerk of a folder (folder_clerk.h), who alone touches what lies there: a disk that hangs
+// keeps nobody else waiting.
+struct WatchOrder {     // looks for files that arrive, from now on
+  std::string printer;  // whose they are; empty: no longer
+  WatchConfig rules;
+  double retry_s = 30;  // before what failed is tried again
+};
+// Takes a file that arrived, and the settings beside it, to where its job is. What was taken
+// already stays so: a claim that was interrupted is finished by the same order.
+struct ClaimOrder {
+  std::int64_t job = 0;
+  std::filesystem::path from;
+  std::filesystem::path to;
+  bool with_settings = false;
+  bool by_copy = false;  // it was copied, and the originals may still be there
+};
 struct FetchOrder {  // copies a file that cannot be renamed to where it belongs
   std::int64_t job = 0;
   std::filesystem::path from;
   std::filesystem::path to;
-  bool with_settings = false;  // the settings file beside it too
+  bool with_settings = false;  // the settings file beside it too, where there is one
   bool keep = false;           // otherwise the originals are removed
+};
+struct PlaceOrder {  // finds a name that is free for a job's file at its end
+  std::int64_t job = 0;
+  std::filesystem::path folder;  // done/ or failed/
+  std::string name;
 };
 // Puts a job's file into done/ or failed/, and beside it its settings file, a picture and a note.
 struct FileOrder {
@@ -59,7 +79,7 @@ struct FileOrder {
   std::filesystem::path note;
   std::string note_text;
 };
-using ClerkOrder = std::variant<FetchOrder, FileOrder>;
+using ClerkOrder = std::variant<WatchOrder, ClaimOrder, FetchOrder, PlaceOrder, FileOrder>;
 
 // To a printer's sender.
 struct SendOrder {
@@ -118,8 +138,37 @@ struct PrepareFailed {
   std::int64_t job = 0;
   Failure failure;
 };
+struct Arrived {  // a file in a printer's watched folder is whole
+  std::string printer;
+  std::filesystem::path file;
+  bool with_settings = false;  // and has a settings file beside it
+};
+struct FileIgnored {  // what lies in a watched folder is never taken
+  std::filesystem::path file;
+  std::string reason;
+};
+struct FolderTold {  // when it changed
+  std::string printer;
+  std::string trouble;  // why its folder, or a file in it, cannot be used now; empty: all is well
+};
+enum class ClaimOutcome {
+  kTaken,
+  kGone,             // it is not there any more, or not as it was found
+  kOtherFileSystem,  // nothing was done: it has to be copied
+  kFailed,
+};
+struct Claimed {
+  std::int64_t job = 0;
+  ClaimOutcome outcome = ClaimOutcome::kTaken;
+  Failure failure;  // of kFailed
+};
 struct Fetched {
   std::int64_t job = 0;
+  std::optional<Failure> failure;
+};
+struct Placed {
+  std::int64_t job = 0;
+  std::filesystem::path to;
   std::optional<Failure> failure;
 };
 struct Filed {
@@ -144,7 +193,8 @@ struct DevicesSeen {               // whenever something was connected or went
   std::optional<Devices> devices;  // nothing: the system does not tell, and why
   std::optional<Failure> failure;
 };
-using Event = std::variant<PrepareProgress, Hashed, Compared, Prepared, PrepareFailed, Fetched,
-                           Filed, SendProgress, SendEnded, DevicesSeen>;
+using Event =
+    std::variant<PrepareProgress, Hashed, Compared, Prepared, PrepareFailed, Arrived, FileIgnored,
+                 FolderTold, Claimed, Fetched, Placed, Filed, SendProgress, SendEnded, DevicesSeen>;
 
 }  // namespace packmerger

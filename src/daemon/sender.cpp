@@ -1,5 +1,4 @@
-#include <chrono>
-
+#include "base/clock.h"
 #include "daemon/print_clock.h"
 #include "daemon/send.h"
 #include "daemon/worker.h"
@@ -22,16 +21,12 @@ SendOutcome outcome_of(const Error& error, bool begun, const PrintControl& contr
   return later && !begun ? SendOutcome::kNotStarted : SendOutcome::kFailed;
 }
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig& printer) {
   bool begun = false;
   PrintClock clock;
   const auto listener = [&](const PrintReport& report) {
     begun = begun || has_begun(report);
-    clock.report(report.state, now_s());
+    clock.report(report.state, steady_now_s());
     events.push(SendProgress{order.job, report});
   };
   try {
@@ -43,7 +38,7 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
     }
     send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control,
               order.tray_files);
-    clock.end(now_s());
+    clock.end(steady_now_s());
     // a document was only taken: how long it is printed, the printer does not tell
     if (!printer.abilities.is_sliced()) return {order.job, SendOutcome::kDone, {}, ""};
     return {order.job, SendOutcome::kDone, {}, "", clock.printed_s(), clock.paused_s()};

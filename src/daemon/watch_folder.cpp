@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "daemon/backoff.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/whole_file.h"
@@ -164,6 +165,7 @@ bool WatchFolder::note_file(const fs::path& path, Seen& seen, double now_s, Foun
     seen.changed_ns = modified_ns(status);
     seen.still_since_s = now_s;
     seen.refused_until_s = 0;
+    seen.refusals = 0;
   }
   return true;
 }
@@ -220,9 +222,11 @@ bool WatchFolder::is_ripe(const fs::path& path, const Seen& seen, double now_s) 
   return false;
 }
 
-void WatchFolder::refuse(const fs::path& path, double until_s) {
+void WatchFolder::refuse(const fs::path& path, double now_s, double retry_s) {
   const auto found = seen_.find(path.filename().string());
-  if (found != seen_.end()) found->second.refused_until_s = until_s;
+  if (found == seen_.end()) return;
+  Seen& seen = found->second;
+  seen.refused_until_s = now_s + backoff_s(retry_s, seen.refusals++);
 }
 
 }  // namespace packmerger

@@ -51,8 +51,9 @@ class WatchFolder {
   // Whether a file that look() found whole, and the settings beside it, are still as they were.
   bool is_still_whole(const std::filesystem::path& path, double now_s) const;
 
-  // The file could not be taken: it is offered again after retry_s, or once it changed.
-  void refuse(const std::filesystem::path& path, double until_s);
+  // The file could not be taken: it is offered again after retry_s, doubled each further time, or
+  // once it changed.
+  void refuse(const std::filesystem::path& path, double now_s, double retry_s);
 
   // When look() has to be called although fd() stays silent.
   double next_look_s() const { return next_look_s_; }
@@ -64,6 +65,7 @@ class WatchFolder {
     std::int64_t changed_ns = 0;
     double still_since_s = 0;
     double refused_until_s = 0;
+    int refusals = 0;
     bool closed = false;  // its writer closed it, or it was moved here
     bool told = false;    // that it is ignored
     bool is_of(const struct stat& status) const;

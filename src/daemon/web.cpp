@@ -2,9 +2,9 @@
 
 #include <cctype>
 #include <charconv>
-#include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "daemon/doors/door.h"
@@ -18,10 +18,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostBody = 4096;  // of a request that is no upload
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // A page of ours may load what is ours and nothing else; three.js makes its textures from blobs.
 void add_safe_headers(HttpReply& reply) {
@@ -80,7 +76,7 @@ Web::~Web() = default;
 
 BodyPlan Web::plan(const HttpRequest& request) {
   const WebRoute route = route_of(request);
-  std::optional<HttpReply> refusal = guard_.refused(request, route.access, now_s());
+  std::optional<HttpReply> refusal = guard_.refused(request, route.access, steady_now_s());
   if (!refusal && route.target == WebTarget::kNone) refusal = no_such_route(route);
   const TakeUpload room{uploads_, config_.most_upload_bytes, true};
   BodyPlan body = TakeText{kMostBody};

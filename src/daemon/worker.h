@@ -1,6 +1,6 @@
-// The threads that do the daemon's slow work: the worker prepares jobs in child processes, the
-// clerk moves files, a sender per printer prints. Each takes orders from its queue until that is
-// closed, and answers through `events`.
+// The threads that do the daemon's slow work: the worker prepares jobs in child processes, a sender
+// per printer prints. Each takes orders from its queue until that is closed, and answers through
+// `events`.
 #pragma once
 
 #include <string>
@@ -14,7 +14,6 @@ namespace packmerger {
 
 // Each runs on the calling thread until its orders are closed and done.
 void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events);
-void run_clerk(Queue<ClerkOrder>& orders, Queue<Event>& events);
 void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer);
 
 // "[ 42%] packing", as packmerger writes it where standard error is no terminal.

@@ -76,7 +76,8 @@ struct Office {
     keys = std::make_unique<KeyRing>(config.state / "keys.json");
     foreman->recover();
     std::ofstream(printer.folder / "a.stl") << "a model";
-    foreman->arrived(config.printers[0], printer.folder / "a.stl");
+    foreman->handle(Arrived{printer.name, printer.folder / "a.stl", false});
+    foreman->handle(Claimed{1, ClaimOutcome::kGone, {}});
   }
 
   DaemonConfig config;

@@ -108,6 +108,7 @@ export interface Printer {
   connected: boolean | null;
   bed: 'clear' | 'not clear' | 'none';
   paused: boolean;
+  trouble: string | null;  // why files in its folder cannot be taken now
   job: number | null;
   print: Print | null;
 }

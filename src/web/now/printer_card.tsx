@@ -23,6 +23,7 @@ export function PrinterCard({ printer, job }: { printer: Printer; job: Job | und
         <Badge badge={badge} />
       </div>
       {printer.print ? <Printing print={printer.print} job={job} printer={printer} /> : <p class="standing">{standing(printer, job)}</p>}
+      {printer.trouble ? <p class="standing">{printer.trouble}</p> : null}
       {printer.print && printer.print.heaters.length > 0 ? <Heaters heaters={printer.print.heaters} /> : null}
       {printer.print?.stage === 'waiting' ? <Question printer={printer} print={printer.print} /> : null}
       {printer.prefer === null ? <Controls printer={printer} /> : null}

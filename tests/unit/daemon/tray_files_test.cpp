@@ -6,6 +6,7 @@
 
 #include "daemon/job_folder.h"
 #include "daemon/send.h"
+#include "daemon/worker.h"
 #include "fixtures/fault_of.h"
 #include "unit/daemon/workshop.h"
 

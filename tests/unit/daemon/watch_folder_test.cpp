@@ -318,10 +318,13 @@ TEST_F(WatchFolderTest, RefusedUntilItIsTimeOrItChanged) {
   write(path("a.stl"), binary_stl(3));
   look();
   EXPECT_THAT(look(1.1), SizeIs(1));
-  watch_->refuse(path("a.stl"), now_s_ + 30);
+  watch_->refuse(path("a.stl"), now_s_, 30);
   EXPECT_THAT(look(20), IsEmpty());
   EXPECT_THAT(look(11), SizeIs(1));
-  watch_->refuse(path("a.stl"), now_s_ + 30);
+  watch_->refuse(path("a.stl"), now_s_, 30);
+  EXPECT_THAT(look(50), IsEmpty()) << "twice as long the second time";
+  EXPECT_THAT(look(11), SizeIs(1));
+  watch_->refuse(path("a.stl"), now_s_, 30);
   write(path("a.stl"), binary_stl(4));
   look();
   EXPECT_THAT(look(1.1), SizeIs(1));

@@ -10,8 +10,9 @@
 #include "base/files.h"
 #include "base/random.h"
 #include "daemon/api.h"
+#include "daemon/clerk.h"
 #include "daemon/foreman.h"
-#include "daemon/worker.h"
+#include "daemon/model_options.h"
 
 namespace packmerger {
 
@@ -66,13 +67,15 @@ class Workshop {
     foreman_ = std::make_unique<Foreman>(config_, *store_, *crew_,
                                          [this](const std::string& line) { log_ += line + "\n"; });
     foreman_->recover();
+    run_claims();
     foreman_->advance(now_s_);
   }
 
   fs::path drop(const std::string& name, const std::string& model) {
     const fs::path file = config_.printer(name)->folder / model;
     std::ofstream(file) << "model " << drops_++;
-    EXPECT_TRUE(foreman_->arrived(*config_.printer(name), file));
+    foreman_->handle(Arrived{name, file, has_settings_beside(file)});
+    run_claims();
     foreman_->advance(now_s_);
     return file;
   }
@@ -95,14 +98,33 @@ class Workshop {
                   60, "slicer", pays ? "" : "packing does not pay", ""});
   }
 
-  // The clerk's work, really done.
+  // The clerks' work, really done.
   void run_the_clerk() {
-    Queue<ClerkOrder> orders;
-    Queue<Event> events;
-    while (auto order = crew_->clerk.try_pop()) orders.push(std::move(*order));
-    orders.close();
-    run_clerk(orders, events);
-    while (auto event = events.try_pop()) tell(*event);
+    while (const std::optional<ClerkOrder> order = clerk_order()) {
+      if (const auto* arrived = std::get_if<ClaimOrder>(&*order)) tell(claim(*arrived));
+      if (const auto* distant = std::get_if<FetchOrder>(&*order)) tell(fetch(*distant));
+      if (const auto* ended = std::get_if<PlaceOrder>(&*order)) tell(place(*ended));
+      if (const auto* placed = std::get_if<FileOrder>(&*order)) tell(file(*placed));
+    }
+  }
+
+  // Of that work only the taking of files that arrived.
+  void run_claims() {
+    for (auto& item : crew_->folders) {
+      std::vector<ClerkOrder> others;
+      while (std::optional<ClerkOrder> order = item.second.orders.try_pop())
+        if (const auto* arrived = std::get_if<ClaimOrder>(&*order))
+          foreman_->handle(claim(*arrived));
+        else
+          others.push_back(std::move(*order));
+      for (ClerkOrder& other : others) item.second.orders.push(std::move(other));
+    }
+  }
+
+  std::optional<ClerkOrder> clerk_order() {
+    for (auto& item : crew_->folders)
+      if (std::optional<ClerkOrder> order = item.second.orders.try_pop()) return order;
+    return std::nullopt;
   }
 
   JobRecord job(std::int64_t id) { return store_->find(id).value(); }

@@ -1,0 +1,59 @@
+// The clerk of one folder: looks for files that arrive there, and takes, copies and files those of
+// the jobs that came from it. He alone touches the folder, so that where its disk hangs nobody
+// waits but who wants something of it.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "daemon/messages.h"
+#include "daemon/pulse.h"
+#include "daemon/watch_folder.h"
+
+namespace packmerger {
+
+// Where a clerk gets his orders, and others see how he is.
+struct ClerkDesk {
+  Queue<ClerkOrder> orders;
+  Pulse pulse;
+};
+
+// Used by one thread, and lives as long as it.
+class FolderClerk {
+ public:
+  FolderClerk(std::filesystem::path folder, ClerkDesk& desk, Queue<Event>& events)
+      : folder_(std::move(folder)), desk_(desk), events_(events) {}
+
+  // Until the orders are closed and done.
+  void run();
+
+ private:
+  void carry_out(const ClerkOrder& order);
+  void watch(const WatchOrder& order);
+  Claimed claim_found(const ClaimOrder& order);
+  Fetched fetch_found(const FetchOrder& order);
+  void refuse(const std::filesystem::path& file, const Failure& failure);
+  void let_go(const std::filesystem::path& file);
+  void look();
+  void offer(const WatchFolder::Found& found);
+  void leave_note(const WatchFolder::Ignored& ignored) const;
+  void tell_trouble();
+  void wait() const;
+
+  std::filesystem::path folder_;
+  ClerkDesk& desk_;
+  Queue<Event>& events_;
+  WatchOrder order_;  // no printer: nothing is watched
+  std::unique_ptr<WatchFolder> watch_;
+  std::set<std::filesystem::path> offered_;  // told of, and neither claimed nor refused so far
+  std::string trouble_;                      // of the folder; empty: none
+  std::map<std::filesystem::path, std::string> file_troubles_;
+  std::string told_;  // what was last told of troubles
+  int failures_ = 0;  // of looking, one after the other
+  double retry_s_ = 0;
+};
+
+}  // namespace packmerger

@@ -1,0 +1,223 @@
+// How files come to the foreman, and where they go at the end. What lies in watched folders is
+// touched by their clerks alone (folder_clerk.h).
+#include "daemon/foreman.h"
+#include "daemon/job_view.h"
+#include "daemon/model_options.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kNoAnswer_s = 10;  // after which a folder's disk is said to hang
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+std::string sentences(const Failure& failure) {
+  return printable(failure.what + (failure.hint.empty() ? "" : ". " + failure.hint));
+}
+
+bool is_good(const JobRecord& job) {
+  return job.state == JobState::kDone || job.state == JobState::kHandedOver;
+}
+
+}  // namespace
+
+Queue<ClerkOrder>& Foreman::clerk_of(const JobRecord& job) {
+  return crew_.folders[fs::path(job.origin).parent_path()].orders;
+}
+
+JobRecord Foreman::begun(const PrinterConfig& printer, const fs::path& origin, bool with_settings) {
+  JobRecord job;
+  job.printer = printer.name;
+  job.name = origin.filename().string();
+  job.origin = origin.string();
+  job.with_settings = with_settings;
+  job.received_s = wall_clock_s();
+  job = store_.add(job);
+  job.input = (job_path(job.id) / "input" / job.name).string();
+  store_.save(job);
+  return job;
+}
+
+// Recorded, and only then moved.
+void Foreman::on(const Arrived& event) {
+  const PrinterConfig* printer = config_.printer(event.printer);
+  if (!stopping_ && printer != nullptr) claim(begun(*printer, event.file, event.with_settings));
+}
+
+void Foreman::claim(const JobRecord& job) {
+  const bool is_dropped = job.again_of == 0;
+  live_[job.id].with_clerk = true;
+  clerk_of(job).push(ClaimOrder{job.id, job.origin, job.input, job.with_settings && is_dropped,
+                                job.by_copy && is_dropped});
+}
+
+void Foreman::on(const Claimed& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (job && job->state == JobState::kClaiming) {
+    if (event.outcome == ClaimOutcome::kOtherFileSystem) {
+      job->by_copy = true;
+      store_.save(*job);
+      return clerk_of(*job).push(
+          FetchOrder{job->id, job->origin, job->input, job->with_settings, false});
+    }
+    if (event.outcome == ClaimOutcome::kTaken)
+      settle(*job);
+    else if (!is_there(job->input))
+      return forget(*job);  // it lies where it was
+    else
+      hold_up(*job, sentences(event.failure));
+  }
+  live_[event.job].with_clerk = false;
+}
+
+void Foreman::on(const Fetched& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (job && job->state == JobState::kClaiming) {
+    if (event.failure && job->again_of != 0) {
+      job->input.clear();
+      end(*job, JobState::kFailed, printable(event.failure->what), event.failure->hint);
+    } else if (event.failure) {
+      return forget(*job);
+    } else {
+      if (job->again_of != 0) job->with_settings = has_settings_beside(job->input);
+      settle(*job);
+    }
+  }
+  live_[event.job].with_clerk = false;
+}
+
+// The job's file is here, and so are its settings.
+void Foreman::settle(JobRecord job) {
+  job.state = JobState::kReceived;
+  store_.save(job);
+  say(job, "received");
+}
+
+void Foreman::forget(const JobRecord& job) {
+  std::error_code ignored;
+  fs::remove_all(job_path(job.id), ignored);
+  store_.forget(job.id);
+  live_.erase(job.id);
+}
+
+// What died while claiming: the file is here, whole, or it never left its place.
+void Foreman::finish_claim(const JobRecord& job) {
+  const LiveJob* known = live(job.id);
+  if (known != nullptr && (known->with_clerk || now_s_ < known->retry_s)) return;
+  if (job.input.empty() || !is_there(job.input)) return forget(JobRecord(job));
+  claim(job);
+}
+
+// An upload lies in the state folder, as the job's own copy does.
+bool Foreman::take_upload(const JobRecord& job, const fs::path& file) {
+  try {
+    if (rename_new(file, job.input) == Moved::kYes) {
+      settle(job);
+      return true;
+    }
+    live_[job.id].with_clerk = true;
+    crew_.folders[file.parent_path()].orders.push(
+        FetchOrder{job.id, file, job.input, false, false});
+    return true;
+  } catch (const Error& error) {
+    // what the database could not be told, advance() sees on the disk
+    say(job, error.what() + (" " + error.hint()));
+    if (is_there(job.input)) return true;
+    forget(job);
+    return false;
+  }
+}
+
+// Told once, and shown with the job until it is mended.
+void Foreman::hold_up(const JobRecord& job, const std::string& trouble) {
+  LiveJob& live = live_[job.id];
+  live.retry_s = retry_at(live.failures++);
+  if (live.trouble != trouble) say(job, trouble);
+  live.trouble = trouble;
+}
+
+// The place is recorded before the file is moved there, so that an interrupted move is finished.
+void Foreman::file_away(const JobRecord& ended) {
+  LiveJob& live = live_[ended.id];
+  if (live.with_clerk || preparing_.contains(ended.id) || now_s_ < live.retry_s) return;
+  live.with_clerk = true;
+  const fs::path folder =
+      fs::path(ended.origin).parent_path() / (is_good(ended) ? "done" : "failed");
+  if (ended.filed.empty())
+    clerk_of(ended).push(PlaceOrder{ended.id, folder, ended.name});
+  else
+    clerk_of(ended).push(file_order(ended));
+}
+
+FileOrder Foreman::file_order(const JobRecord& job) const {
+  return {job.id,
+          job.input,
+          job.filed,
+          job.with_settings,
+          job.folder.empty() ? fs::path() : job.folder / fs::path("preview.png"),
+          note_beside(job.filed, is_good(job) ? ".result.json" : ".reason.txt"),
+          is_good(job) ? result_note(job) : reason_note(job)};
+}
+
+void Foreman::on(const Placed& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (job && !event.failure) {
+    job->filed = event.to.string();
+    store_.save(*job);
+    return clerk_of(*job).push(file_order(*job));
+  }
+  if (job) hold_up(*job, "not yet filed: " + sentences(*event.failure));
+  live_[event.job].with_clerk = false;
+}
+
+void Foreman::on(const Filed& event) {
+  std::optional<JobRecord> job = store_.find(event.job);
+  if (event.failure && job) {
+    if (event.failure->fault == Fault::kBusy) {  // the name was taken meanwhile
+      job->filed.clear();
+      store_.save(*job);
+    } else {
+      hold_up(*job, "not yet filed: " + sentences(*event.failure));
+    }
+    live_[event.job].with_clerk = false;
+    return;
+  }
+  if (job) {
+    job->input.clear();
+    job->filing_done = true;
+    store_.save(*job);
+  }
+  live_.erase(event.job);
+}
+
+void Foreman::on(const FileIgnored& event) {
+  log_(printable(event.file.string()) + ": not taken, " + event.reason);
+}
+
+void Foreman::on(const FolderTold& event) { folder_troubles_[event.printer] = event.trouble; }
+
+std::string Foreman::folder_trouble(const PrinterConfig& printer) const {
+  const auto desk = crew_.folders.find(printer.folder);
+  if (desk != crew_.folders.end() && desk->second.pulse.hangs(kNoAnswer_s))
+    return "its folder does not answer: " + printable(printer.folder.string());
+  const auto told = folder_troubles_.find(printer.name);
+  return told == folder_troubles_.end() ? "" : told->second;
+}
+
+// One line when it begins, and one when it is over.
+void Foreman::notice_folders() {
+  for (const PrinterConfig& printer : config_.printers) {
+    const std::string trouble = folder_trouble(printer);
+    std::string& told = folder_told_[printer.name];
+    if (trouble == told) continue;
+    log_("printer " + printer.name + ": " +
+         (trouble.empty() ? "its folder is usable again" : trouble));
+    told = trouble;
+  }
+}
+
+}  // namespace packmerger
