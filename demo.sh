@@ -42,6 +42,7 @@ state = "state"
 
 [web]
 port = $([ "${1:-}" = web ] && echo 8310 || echo 0)
+trust_local = false
 
 [printer.replicator]
 profile = "replicator"
@@ -106,8 +107,9 @@ cat <<EOF
   your model    $(field filed)
 EOF
 if [ "${1:-}" = web ]; then
-  say "The page: http://localhost:8310"
-  echo "  Its key, for whatever changes something: $(packmerger keys add demo)"
+  say "The page: $(packmerger keys link 2>/dev/null)"
+  echo "  That link is good once, within 15 minutes, and lets a browser look."
+  echo "  The key for whatever changes something: $(packmerger keys add demo 2>/dev/null)"
   echo "  Ctrl-C ends it."
   trap "exit 0" INT
   wait "$daemon"

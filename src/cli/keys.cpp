@@ -18,9 +18,10 @@ struct Arguments {
 void print_keys(const Arguments& arguments, const json& keys) {
   if (arguments.daemon.json) return print_json(keys);
   if (keys.empty()) return fmt::print("There are no keys: nobody can change anything by web.\n");
-  std::vector<std::vector<std::string>> rows = {{"KEY", "MADE"}};
+  std::vector<std::vector<std::string>> rows = {{"KEY", "MADE", "MAY"}};
   for (const json& key : keys)
-    rows.push_back({text_of(key, "name"), time_text(key.value("made_s", json()))});
+    rows.push_back(
+        {text_of(key, "name"), time_text(key.value("made_s", json())), text_of(key, "may")});
   print_table(rows);
 }
 
@@ -37,6 +38,16 @@ void add(const Arguments& arguments) {
   if (arguments.daemon.json) return print_json(key);
   fmt::print("{}\n", text_of(key, "key"));
   fmt::print(stderr, "Keep it: it is shown only now. Programs send it as X-Api-Key.\n");
+}
+
+void link(const Arguments& arguments) {
+  const json made = ask(arguments.daemon, {{"verb", "keys.link"}});
+  if (arguments.daemon.json) return print_json(made);
+  fmt::print("{}\n", text_of(made, "link"));
+  fmt::print(stderr,
+             "Good for one browser, within {:.0f} minutes. It may look; to change something "
+             "the page asks for a key.\n",
+             made.value("good_for_s", 0.0) / 60);
 }
 
 }  // namespace
@@ -56,6 +67,8 @@ void add_keys(CLI::App& program) {
   named(action("add", "Makes a key and prints it, once"))->callback([arguments] {
     add(*arguments);
   });
+  action("link", "Prints a link with which a browser may look at the page, once")
+      ->callback([arguments] { link(*arguments); });
   named(action("revoke", "Makes a key worthless"))->callback([arguments] { revoke(*arguments); });
 }
 

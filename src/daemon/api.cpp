@@ -6,6 +6,7 @@
 
 #include "daemon/job_view.h"
 #include "daemon/waits.h"
+#include "daemon/web.h"
 
 namespace packmerger {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using nlohmann::json;
 using Verb = json (*)(Foreman&, const json&);
 using Starts = std::optional<JobRecord> (*)(const Foreman&, const json&);
-using KeyVerb = json (*)(KeyRing&, const json&);
+using KeyVerb = json (*)(const WebConfig&, KeyRing&, const json&);
 
 constexpr int kDefaultJobs = 100;
 constexpr int kMostJobs = 1000;
@@ -150,26 +151,36 @@ const std::map<std::string, Starts, std::less<>>& starters() {
   return kStarters;
 }
 
-json list_keys(KeyRing& keys, const json&) {
+json list_keys(const WebConfig&, KeyRing& keys, const json&) {
   json list = json::array();
   for (const WebKey& key : keys.list())
-    list.push_back({{"name", key.name}, {"made_s", key.made_s}});
+    list.push_back(
+        {{"name", key.name}, {"made_s", key.made_s}, {"may", key.looks_only ? "look" : "change"}});
   return list;
 }
 
-json add_key(KeyRing& keys, const json& request) {
+json add_key(const WebConfig&, KeyRing& keys, const json& request) {
   const std::string name = name_of(request, "a name");
   return {{"name", name}, {"key", keys.add(name)}};
 }
 
-json revoke_key(KeyRing& keys, const json& request) {
+json revoke_key(const WebConfig& web, KeyRing& keys, const json& request) {
   keys.revoke(name_of(request, "a name"));
-  return list_keys(keys, request);
+  return list_keys(web, keys, request);
+}
+
+json link_for_page(const WebConfig& web, KeyRing& keys, const json&) {
+  if (web.port == 0)
+    throw Error(Fault::kUsage, "The web server is off",
+                "Set port in the table [web] of the settings, and reload them.");
+  return {{"link", look_link(web, keys)}, {"good_for_s", LookCodes::kGoodFor_s}};
 }
 
 const std::map<std::string, KeyVerb, std::less<>>& key_verbs() {
-  static const std::map<std::string, KeyVerb, std::less<>> kVerbs = {
-      {"keys.list", list_keys}, {"keys.add", add_key}, {"keys.revoke", revoke_key}};
+  static const std::map<std::string, KeyVerb, std::less<>> kVerbs = {{"keys.list", list_keys},
+                                                                     {"keys.add", add_key},
+                                                                     {"keys.revoke", revoke_key},
+                                                                     {"keys.link", link_for_page}};
   return kVerbs;
 }
 
@@ -198,7 +209,8 @@ Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
   const auto name = request.find("verb");
   if (name == request.end() || !name->is_string()) not_understood("The request has no verb");
   const auto key_verb = key_verbs().find(name->get<std::string>());
-  if (key_verb != key_verbs().end()) return {key_verb->second(keys, request)};
+  if (key_verb != key_verbs().end())
+    return {key_verb->second(foreman.config().web, keys, request)};
   const auto verb = verbs().find(name->get<std::string>());
   if (verb == verbs().end()) not_understood("The request's verb is unknown");
   const auto starter = starters().find(verb->first);

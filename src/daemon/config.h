@@ -43,6 +43,9 @@ struct WebConfig {
   int port = 0;                       // 0: no web server
   std::string address = "127.0.0.1";  // numeric
   std::vector<std::string> hosts;     // names by which browsers reach it
+  // Whether whoever asks from this machine may read without a key. Not set: as it was before this
+  // could be said, yes, with a warning.
+  std::optional<bool> trust_local;
   std::uint64_t most_upload_bytes = std::uint64_t{1} << 30;
   std::filesystem::path page;  // the built page's folder; it may be missing
 

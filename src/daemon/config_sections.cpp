@@ -77,6 +77,7 @@ void read_web(TableReader& reader, const fs::path& file, WebConfig& web) {
     }
     return true;
   });
+  reader.flag("trust_local", [&](bool value) { web.trust_local = value; });
   reader.integer("most_upload_bytes", 1 << 20, std::int64_t{1} << 40,
                  "an integer from 1048576 (1 MiB) to 2^40 (bytes)", [&](std::int64_t value) {
                    web.most_upload_bytes = static_cast<std::uint64_t>(value);

@@ -92,12 +92,24 @@ void FrontDesk::open(double now_s) {
     web_ = std::make_unique<Web>(config_, keys_, questions_, events_);
     log_("web server at http://" + web_->address() + ":" + std::to_string(web_->port()) +
          (keys_.empty() ? " (no key yet: packmerger keys add NAME)" : ""));
+    tell_who_may_look();
     told_.clear();
   } catch (const std::exception& error) {
     if (told_ != error.what()) log_(error.what());
     told_ = error.what();
     retry_s_ = now_s + config_.retry_s;
   }
+}
+
+void FrontDesk::tell_who_may_look() {
+  if (!config_.web.trust_local)
+    log_(
+        "web.trust_local is not set, so whoever asks from this machine may look without a key, and "
+        "everybody behind a proxy here that does not say that it is one: set it to false, and "
+        "packmerger keys link lets a browser look");
+  else if (!*config_.web.trust_local)
+    log_("to look at the page from here, once, within 15 minutes: " +
+         look_link(config_.web, keys_) + " (packmerger keys link prints another)");
 }
 
 void FrontDesk::announce() {

@@ -38,6 +38,7 @@ class FrontDesk {
 
  private:
   void open(double now_s);
+  void tell_who_may_look();
   void close();
   void announce();
   void answer_questions();

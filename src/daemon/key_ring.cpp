@@ -1,15 +1,14 @@
 #include "daemon/key_ring.h"
 
 #include <openssl/crypto.h>
-#include <openssl/rand.h>
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "daemon/foreman.h"
+#include "daemon/random_text.h"
 
 namespace packmerger {
 namespace {
@@ -19,22 +18,9 @@ using nlohmann::json;
 constexpr std::size_t kKeyBytes = 32;
 constexpr std::size_t kLongestName = 64;
 constexpr std::uint64_t kMostBytes = 1 << 20;
+constexpr int kMostPages = 20;
 
-std::string random_key() {
-  constexpr std::string_view kLetters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-  std::array<unsigned char, kKeyBytes> bytes;
-  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
-    throw Error(Fault::kInternal, "The system gives no random numbers", "Try again.");
-  std::string text = "pm_";
-  unsigned held = 0;
-  int bits = 0;
-  for (const unsigned char byte : bytes) {
-    held = held << 8 | byte;
-    for (bits += 8; bits >= 6; bits -= 6) text += kLetters[held >> (bits - 6) & 63];
-  }
-  return text + kLetters[held << (6 - bits) & 63];
-}
+std::string page_name(int number) { return "page " + std::to_string(number); }
 
 bool is_name(std::string_view name) {
   const auto fits = [](char c) {
@@ -61,14 +47,17 @@ KeyRing::KeyRing(std::filesystem::path file) : file_(std::move(file)) {
         !key.contains("sha256") || !key["sha256"].is_string() || !key.contains("made_s") ||
         !key["made_s"].is_number())
       damaged();
-    keys_.push_back({key["name"], key["sha256"], key["made_s"]});
+    const bool looks = key.contains("may");  // of this one's values "look" is the only one yet
+    keys_.push_back({key["name"], key["sha256"], key["made_s"], looks});
   }
 }
 
 void KeyRing::save(const std::vector<WebKey>& keys) const {
   json list = json::array();
-  for (const WebKey& key : keys)
+  for (const WebKey& key : keys) {
     list.push_back({{"name", key.name}, {"sha256", key.sha256}, {"made_s", key.made_s}});
+    if (key.looks_only) list.back()["may"] = "look";
+  }
   write_file_whole(file_, list.dump(2) + "\n");
 }
 
@@ -82,8 +71,26 @@ std::string KeyRing::add(const std::string& name) {
     if (key.name == name)
       throw Error(Fault::kUsage, "There is a key named " + name + " already",
                   "Revoke it first, or choose another name.");
-  const std::string text = random_key();
-  keys.push_back({name, sha256_hex(text), wall_clock_s()});
+  const std::string text = "pm_" + random_text(kKeyBytes);
+  keys.push_back({name, sha256_hex(text), wall_clock_s(), false});
+  save(keys);
+  keys_ = std::move(keys);
+  return text;
+}
+
+std::optional<std::string> KeyRing::look(std::string_view code, double now_s) {
+  if (!codes_.take(code, now_s)) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  std::vector<WebKey> keys = keys_;
+  const auto is_page = [](const WebKey& key) { return key.looks_only; };
+  if (std::count_if(keys.begin(), keys.end(), is_page) >= kMostPages)
+    keys.erase(std::find_if(keys.begin(), keys.end(), is_page));
+  int number = 0;
+  const auto is_taken = [&](const WebKey& key) { return key.name == page_name(number); };
+  do ++number;
+  while (std::any_of(keys.begin(), keys.end(), is_taken));
+  const std::string text = "pm_look_" + random_text(kKeyBytes);
+  keys.push_back({page_name(number), sha256_hex(text), wall_clock_s(), true});
   save(keys);
   keys_ = std::move(keys);
   return text;
@@ -98,19 +105,24 @@ void KeyRing::revoke(const std::string& name) {
   keys_ = std::move(keys);
 }
 
+bool KeyRing::empty() const {
+  const std::vector<WebKey> keys = list();
+  return std::all_of(keys.begin(), keys.end(), [](const WebKey& key) { return key.looks_only; });
+}
+
 std::vector<WebKey> KeyRing::list() const {
   const std::lock_guard lock(mutex_);
   return keys_;
 }
 
-std::optional<std::string> KeyRing::owner(std::string_view text) const {
+std::optional<WebKey> KeyRing::find(std::string_view text) const {
   const std::string hash = sha256_hex(text);
-  std::optional<std::string> owner;
+  std::optional<WebKey> found;
   for (const WebKey& key : list())
     if (key.sha256.size() == hash.size() &&
         CRYPTO_memcmp(key.sha256.data(), hash.data(), hash.size()) == 0)
-      owner = key.name;
-  return owner;
+      found = key;
+  return found;
 }
 
 }  // namespace packmerger

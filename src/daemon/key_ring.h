@@ -1,4 +1,4 @@
-// The keys with which programs and browsers may change something through the daemon's web server.
+// The keys with which programs and browsers may use the daemon's web server.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,15 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/look_codes.h"
+
 namespace packmerger {
 
 struct WebKey {
-  std::string name;    // what people call it
-  std::string sha256;  // of the key's text, which is kept nowhere
-  double made_s = 0;   // Unix time
+  std::string name;         // what people call it
+  std::string sha256;       // of the key's text, which is kept nowhere
+  double made_s = 0;        // Unix time
+  bool looks_only = false;  // it may see everything and change nothing
 };
 
 // Thread-safe. Kept in one file, whole or as it was before.
@@ -27,14 +30,20 @@ class KeyRing {
   // Error{kUsage} for a name that is taken or holds more than letters, digits, "-", "_", "." and
   // spaces, Error{kCannotWrite}.
   std::string add(const std::string& name);
+  // A code that look() takes once. now_s: a clock that never goes back.
+  std::string add_code(double now_s) { return codes_.add(now_s); }
+  // For a code that is still good: makes the key of a page that may look and change nothing, named
+  // "page 1" and so on; the oldest of twenty goes. Throws Error{kCannotWrite}.
+  std::optional<std::string> look(std::string_view code, double now_s);
   // Throws Error{kNoInput} where there is none of that name.
   void revoke(const std::string& name);
 
   std::vector<WebKey> list() const;
-  bool empty() const { return list().empty(); }
+  // Whether there is none that may change something.
+  bool empty() const;
 
-  // Whose key a text is. Takes as long for a wrong key as for a right one.
-  std::optional<std::string> owner(std::string_view text) const;
+  // Which key a text is. Takes as long for a wrong key as for a right one.
+  std::optional<WebKey> find(std::string_view text) const;
 
  private:
   void save(const std::vector<WebKey>& keys) const;
@@ -42,6 +51,7 @@ class KeyRing {
   std::filesystem::path file_;
   mutable std::mutex mutex_;  // guards keys_
   std::vector<WebKey> keys_;
+  LookCodes codes_;
 };
 
 }  // namespace packmerger

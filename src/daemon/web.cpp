@@ -31,8 +31,7 @@ void add_safe_headers(HttpReply& reply) {
        {"X-Frame-Options", "DENY"},
        {"Referrer-Policy", "no-referrer"},
        {"Cross-Origin-Resource-Policy", "same-origin"},
-       {"Cross-Origin-Opener-Policy", "same-origin"},
-       {"Cache-Control", "no-store"}});
+       {"Cross-Origin-Opener-Policy", "same-origin"}});
 }
 
 std::optional<std::int64_t> number(const std::string& text) {
@@ -58,13 +57,21 @@ std::filesystem::path uploads_folder(const DaemonConfig& config) {
   return config.state / "uploads";
 }
 
-Web::Web(const DaemonConfig& config, const KeyRing& keys, WebQuestions& questions,
-         WebEvents& events)
+std::string look_link(const WebConfig& web, KeyRing& keys) {
+  const bool is_one = web.address != "0.0.0.0" && web.address != "::" && web.address != "127.0.0.1";
+  const std::string host = keys.empty() || !is_one ? "localhost" : web.address;
+  const bool is_six = host.find(':') != std::string::npos;
+  return "http://" + (is_six ? "[" + host + "]" : host) + ":" + std::to_string(web.port) +
+         "/#look=" + keys.add_code(now_s());
+}
+
+Web::Web(const DaemonConfig& config, KeyRing& keys, WebQuestions& questions, WebEvents& events)
     : config_(config.web),
       uploads_(uploads_folder(config)),
+      keys_(keys),
       desk_(questions),
       events_(events),
-      guard_(config.web.hosts, keys),
+      guard_(config.web.hosts, keys, config.web.trust_local.value_or(true)),
       address_(keys.empty() ? "127.0.0.1" : config.web.address) {
   server_ = std::make_unique<HttpServer>(
       address_, config.web.port,
@@ -78,6 +85,7 @@ BodyPlan Web::plan(const HttpRequest& request) {
   const WebRoute route = route_of(request);
   std::optional<HttpReply> refusal = guard_.refused(request, route.access, steady_now_s());
   if (!refusal && route.target == WebTarget::kNone) refusal = no_such_route(route);
+  if (refusal) guard_.hold_back(*refusal);
   const TakeUpload room{uploads_, config_.most_upload_bytes, true};
   BodyPlan body = TakeText{kMostBody};
   if (refusal)
@@ -122,8 +130,10 @@ HttpReply Web::routed(HttpRequest& request) {
       return upload_rules();
     case WebTarget::kJobFile:
       return file_of_job(route.id, route.file);
+    case WebTarget::kLook:
+      return look(request);
     case WebTarget::kEvents:
-      return events();
+      return events(request);
     case WebTarget::kDoor:
       return answer_at_door(request, desk_);
     case WebTarget::kPage:
@@ -170,15 +180,32 @@ HttpReply Web::file_of_job(const std::string& id, const std::string& name) {
   HttpReply reply;
   reply.type = media_type(name);
   reply.file = is_part ? fs::path(folder) / "parts" / name : fs::path(folder) / name;
+  reply.keep = Keep::kWhileTheSame;
   return reply;
 }
 
-HttpReply Web::events() {
+HttpReply Web::look(const HttpRequest& request) {
+  const std::optional<std::string> key = keys_.look(request.body, now_s());
+  if (!key)
+    return web_error(401, Fault::kUsage, "This link was used already, or is too old",
+                     "packmerger keys link prints another.");
+  HttpReply reply;
+  reply.body = json{{"key", *key}, {"may", "look"}}.dump() + "\n";
+  return reply;
+}
+
+// A stream lasts for hours, and ends with its key.
+HttpReply Web::events(const HttpRequest& request) {
   HttpReply reply;
   reply.type = "text/event-stream";
   reply.next = events_.stream();
   if (!reply.next)
     return web_error(503, Fault::kBusy, "Too many pages watch already", "Close one and try again.");
+  if (const std::string key(key_of(request)); !key.empty())
+    reply.next = [this, key, next = std::move(reply.next)]() -> std::optional<std::string> {
+      std::optional<std::string> text = next();
+      return keys_.find(key) ? std::move(text) : std::nullopt;
+    };
   return reply;
 }
 
@@ -187,6 +214,8 @@ HttpReply Web::page(const HttpRequest& request) const {
   HttpReply reply;
   reply.type = media_type(path);
   reply.file = config_.page / path.substr(1);
+  // the names of those change with what they hold
+  reply.keep = path.starts_with("/assets/") ? Keep::kForEver : Keep::kWhileTheSame;
   std::error_code ignored;
   if (request.path == "/" && !fs::exists(reply.file, ignored))
     return web_error(404, Fault::kNoInput, "This daemon was built without its page",

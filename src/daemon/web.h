@@ -17,12 +17,15 @@ namespace packmerger {
 // Where files lie while they come in.
 std::filesystem::path uploads_folder(const DaemonConfig& config);
 
+// Where a browser beside the daemon finds the page, with a code that lets it look, once.
+std::string look_link(const WebConfig& web, KeyRing& keys);
+
 // Runs while it lives. Requests wait for the loop for some seconds at most.
 class Web {
  public:
   // Where no key was made yet it listens on this machine alone, whatever the settings say. Throws
   // as HttpServer does.
-  Web(const DaemonConfig& config, const KeyRing& keys, WebQuestions& questions, WebEvents& events);
+  Web(const DaemonConfig& config, KeyRing& keys, WebQuestions& questions, WebEvents& events);
   Web(const Web&) = delete;
   Web& operator=(const Web&) = delete;
   ~Web();
@@ -38,11 +41,13 @@ class Web {
   HttpReply upload(HttpRequest& request);
   HttpReply upload_rules() const;
   HttpReply file_of_job(const std::string& id, const std::string& name);
-  HttpReply events();
+  HttpReply look(const HttpRequest& request);
+  HttpReply events(const HttpRequest& request);
   HttpReply page(const HttpRequest& request) const;
 
   const WebConfig config_;  // as it was: the loop may read the settings again
   const std::filesystem::path uploads_;
+  KeyRing& keys_;
   WebDesk desk_;
   WebEvents& events_;
   WebGuard guard_;

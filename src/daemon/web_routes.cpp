@@ -38,6 +38,7 @@ constexpr std::array kRows = {
     Row{"POST", "printers/{name}/stop", WebTarget::kVerb, Access::kChange, "printers.stop"},
     Row{"GET", "state", WebTarget::kVerb, Access::kRead, "state"},
     Row{"GET", "uploads", WebTarget::kRules, Access::kRead, ""},
+    Row{"POST", "look", WebTarget::kLook, Access::kOpen, ""},
     Row{"GET", "events", WebTarget::kEvents, Access::kRead, ""},
 };
 

@@ -14,6 +14,7 @@ enum class WebTarget {
   kVerb,     // a verb of the local socket
   kUpload,   // a model for a printer
   kRules,    // what an upload may be
+  kLook,     // a code of look_codes.h for a key that may look
   kJobFile,  // a file of a job's folder
   kEvents,   // server-sent events
   kDoor,     // what slicers ask: doors/doors.h

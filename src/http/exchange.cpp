@@ -1,24 +1,21 @@
 #include "http/exchange.h"
 
-#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
 
-#include "base/descriptor.h"
+#include "http/body.h"
 #include "http/path.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::size_t kFormBuffer = 32768;
-constexpr std::size_t kStreamBlock = 16384;
 constexpr std::size_t kMostHeaders = 64;
 
 bool is_loopback(const sockaddr* address) {
@@ -30,6 +27,12 @@ bool is_loopback(const sockaddr* address) {
   if (address->sa_family != AF_INET6) return false;
   const in6_addr& six = reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr;
   return IN6_IS_ADDR_LOOPBACK(&six) || (IN6_IS_ADDR_V4MAPPED(&six) && six.s6_addr[12] == 127);
+}
+
+const sockaddr* address_of(MHD_Connection* connection) {
+  const MHD_ConnectionInfo* info =
+      MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+  return info == nullptr ? nullptr : info->client_addr;
 }
 
 std::string numeric(const sockaddr* address) {
@@ -52,56 +55,15 @@ HttpReply refusal(int status) {
   return plain(status, "The upload could not be written; look into the daemon's messages.");
 }
 
-// The content of a streamed reply.
-struct Stream {
-  std::function<std::optional<std::string>()> next;
-  std::string pending;
-};
-
-ssize_t read_stream(void* closure, std::uint64_t, char* to, std::size_t most) {
-  auto* stream = static_cast<Stream*>(closure);
-  if (stream->pending.empty()) {
-    std::optional<std::string> more = stream->next();
-    if (!more) return MHD_CONTENT_READER_END_OF_STREAM;
-    stream->pending = std::move(*more);
-  }
-  const std::size_t count = std::min(most, stream->pending.size());
-  std::memcpy(to, stream->pending.data(), count);
-  stream->pending.erase(0, count);
-  return static_cast<ssize_t>(count);
-}
-
-MHD_Response* file_response(const std::filesystem::path& path) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK));
-  struct stat known;
-  if (file.get() < 0 || ::fstat(file.get(), &known) != 0 || !S_ISREG(known.st_mode)) return nullptr;
-  MHD_Response* response =
-      MHD_create_response_from_fd64(static_cast<std::uint64_t>(known.st_size), file.get());
-  if (response != nullptr) file.release();
-  return response;
-}
-
-MHD_Response* response_of(const HttpReply& reply) {
-  if (!reply.file.empty()) return file_response(reply.file);
-  if (reply.next) {
-    auto* stream = new Stream{reply.next, {}};
-    return MHD_create_response_from_callback(
-        MHD_SIZE_UNKNOWN, kStreamBlock, read_stream, stream,
-        [](void* closure) { delete static_cast<Stream*>(closure); });
-  }
-  return MHD_create_response_from_buffer(reply.body.size(), const_cast<char*>(reply.body.data()),
-                                         MHD_RESPMEM_MUST_COPY);
-}
-
-MHD_Result send(MHD_Connection* connection, const HttpReply& reply) {
-  MHD_Response* response = response_of(reply);
-  if (response == nullptr) return send(connection, plain(404, "There is no such file."));
-  MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, reply.type.c_str());
+MHD_Result send(MHD_Connection* connection, const HttpRequest& request, const HttpReply& reply) {
+  const ResponseBody body = body_of(request, reply);
+  if (body.response == nullptr)
+    return send(connection, request, plain(404, "There is no such file."));
+  MHD_add_response_header(body.response, MHD_HTTP_HEADER_CONTENT_TYPE, reply.type.c_str());
   for (const auto& [name, value] : reply.headers)
-    MHD_add_response_header(response, name.c_str(), value.c_str());
-  const MHD_Result sent =
-      MHD_queue_response(connection, static_cast<unsigned>(reply.status), response);
-  MHD_destroy_response(response);
+    MHD_add_response_header(body.response, name.c_str(), value.c_str());
+  const MHD_Result sent = MHD_queue_response(connection, body.status, body.response);
+  MHD_destroy_response(body.response);
   return sent;
 }
 
@@ -112,6 +74,8 @@ MHD_Result add_header(void* closure, MHD_ValueKind, const char* name, const char
 }
 
 }  // namespace
+
+std::string peer_of(MHD_Connection* connection) { return numeric(address_of(connection)); }
 
 Exchange::~Exchange() {
   if (form_ != nullptr) MHD_destroy_post_processor(form_);
@@ -135,35 +99,32 @@ MHD_Result Exchange::begin(MHD_Connection* connection, const char* method) {
   request_.method = std::strcmp(method, "HEAD") == 0 ? "GET" : method;
   const std::size_t question = std::min(target_.find('?'), target_.size());
   const std::optional<std::string> path = decoded_path(target_.substr(0, question));
-  if (!path) return send(connection, refusal(400));
+  if (!path) return send(connection, request_, refusal(400));
   request_.path = *path;
   if (question < target_.size()) request_.query = decoded_query(target_.substr(question + 1));
-  const MHD_ConnectionInfo* info =
-      MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-  const sockaddr* address = info == nullptr ? nullptr : info->client_addr;
-  request_.peer = numeric(address);
-  request_.is_loopback = is_loopback(address);
+  request_.peer = peer_of(connection);
+  request_.is_loopback = is_loopback(address_of(connection));
   MHD_get_connection_values(connection, MHD_HEADER_KIND, add_header, &request_.headers);
-  if (request_.headers.size() > kMostHeaders) return send(connection, refusal(400));
+  if (request_.headers.size() > kMostHeaders) return send(connection, request_, refusal(400));
   BodyPlan plan = handler_.plan(request_);
-  if (const auto* reply = std::get_if<HttpReply>(&plan)) return send(connection, *reply);
+  if (const auto* reply = std::get_if<HttpReply>(&plan)) return send(connection, request_, *reply);
   if (const auto* text = std::get_if<TakeText>(&plan)) most_text_ = text->most_bytes;
   if (const auto* upload = std::get_if<TakeUpload>(&plan)) return begin_upload(connection, *upload);
-  return announced() > most_text_ ? send(connection, refusal(413)) : MHD_YES;
+  return announced() > most_text_ ? send(connection, request_, refusal(413)) : MHD_YES;
 }
 
 MHD_Result Exchange::begin_upload(MHD_Connection* connection, const TakeUpload& plan) {
-  if (announced() > plan.most_bytes) return send(connection, refusal(413));
+  if (announced() > plan.most_bytes) return send(connection, request_, refusal(413));
   if (!Upload::has_room(plan.folder, announced(), limits_.spare_bytes))
-    return send(connection, refusal(507));
+    return send(connection, request_, refusal(507));
   upload_.emplace(plan.folder, plan.most_bytes, limits_.spare_bytes);
   if (plan.is_form) {
     names_.emplace(request_.header("Content-Type"));
     form_ = MHD_create_post_processor(connection, kFormBuffer, take_field, this);
-    return form_ == nullptr ? send(connection, refusal(400)) : MHD_YES;
+    return form_ == nullptr ? send(connection, request_, refusal(400)) : MHD_YES;
   }
   const int status = upload_->begin("", "");
-  return status == 0 ? MHD_YES : send(connection, refusal(status));
+  return status == 0 ? MHD_YES : send(connection, request_, refusal(status));
 }
 
 // The body's length as the client announced it; 0 where it did not.
@@ -215,9 +176,9 @@ MHD_Result Exchange::finish(MHD_Connection* connection) {
     if (status_ == 0 && !whole) status_ = 400;
   }
   if (upload_ && status_ == 0) status_ = upload_->end();
-  if (status_ != 0) return send(connection, refusal(status_));
+  if (status_ != 0) return send(connection, request_, refusal(status_));
   if (upload_) request_.files = upload_->files();
-  return send(connection, handler_.answer(request_));
+  return send(connection, request_, handler_.answer(request_));
 }
 
 }  // namespace packmerger

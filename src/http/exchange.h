@@ -14,6 +14,9 @@
 
 namespace packmerger {
 
+// The client's numeric address; empty where it is not known.
+std::string peer_of(MHD_Connection* connection);
+
 class Exchange {
  public:
   // target: as it stands in the request line. handler and limits must outlive it.

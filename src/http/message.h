@@ -38,6 +38,10 @@ struct HttpRequest {
   std::string_view header(std::string_view name) const;
 };
 
+// What a client may keep of a file. One that it keeps while it is the same has a tag, and who has
+// it already is told so (304) without being sent it again.
+enum class Keep { kNothing, kWhileTheSame, kForEver };
+
 struct HttpReply {
   int status = 200;
   std::string type = "application/json";
@@ -46,6 +50,7 @@ struct HttpReply {
   // Sent instead of the body: a file (never a link), or what `next` gives until it gives nothing;
   // `next` may wait some seconds for more, and is called on the connection's own thread.
   std::filesystem::path file = {};
+  Keep keep = Keep::kNothing;
   std::function<std::optional<std::string>()> next = {};
 };
 

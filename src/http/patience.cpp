@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <string_view>
+#include <vector>
 
 namespace packmerger {
 namespace {
@@ -37,12 +39,31 @@ Patience::~Patience() {
   watcher_.join();
 }
 
-HttpSender* Patience::begun(int socket) {
+HttpSender* Patience::begun(int socket, const std::string& peer) {
   const std::lock_guard lock(mutex_);
   HttpSender& sender = senders_.emplace_back();
   sender.socket = socket;
+  sender.peer = peer;
   sender.since_s = now_s();
+  make_room();
   return &sender;
+}
+
+void Patience::make_room() {
+  std::map<std::string_view, std::vector<HttpSender*>> waiting;
+  std::size_t all = 0;
+  for (HttpSender& sender : senders_)
+    if (sender.awaits == HttpSender::Awaits::kHeaders) {
+      waiting[sender.peer].push_back(&sender);
+      ++all;
+    }
+  const auto most = std::max_element(
+      waiting.begin(), waiting.end(),
+      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  if (all <= limits_.waiting && most->second.size() <= limits_.waiting_of_a_peer) return;
+  end(**std::min_element(
+      most->second.begin(), most->second.end(),
+      [](const HttpSender* a, const HttpSender* b) { return a->since_s < b->since_s; }));
 }
 
 void Patience::ended(HttpSender* sender) {

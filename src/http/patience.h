@@ -1,11 +1,12 @@
 // Clients that send a byte now and then are never silent, and would hold their connection for ever:
-// this ends those that take too long.
+// this ends those that take too long, and the oldest of those that wait where there are too many.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
 #include <list>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace packmerger {
@@ -14,12 +15,15 @@ struct PatienceLimits {
   double headers_s = 30;              // for a whole request line and headers, and between requests
   double body_s = 30;                 // a body may be slower than body_bytes_s for so long
   std::uint64_t body_bytes_s = 4096;  // on average, since the body began
+  unsigned waiting = 96;              // connections that have sent no whole headers yet
+  unsigned waiting_of_a_peer = 32;    // the same, of one address
 };
 
 // What a connection's client is to send now. Only Patience looks inside.
 struct HttpSender {
   enum class Awaits { kHeaders, kBody, kNothing };
   int socket = -1;
+  std::string peer;  // the client's address
   Awaits awaits = Awaits::kHeaders;
   double since_s = 0;
   std::uint64_t bytes = 0;
@@ -33,8 +37,10 @@ class Patience {
   Patience& operator=(const Patience&) = delete;
   ~Patience();
 
-  // A connection that has begun; ended() must be called for it before its socket is closed.
-  HttpSender* begun(int socket);
+  // A connection that has begun; ended() must be called for it before its socket is closed. Where
+  // too many wait for their headers now, the longest waiting of the address that has most of them
+  // is ended: whoever sends his request at once is never the one.
+  HttpSender* begun(int socket, const std::string& peer);
   void ended(HttpSender* sender);
 
   // What it is to send from now on. kHeaders: a whole request line and headers.
@@ -43,6 +49,7 @@ class Patience {
 
  private:
   bool is_late(const HttpSender& sender, double now_s) const;
+  void make_room();
   void watch();
 
   PatienceLimits limits_;

@@ -83,7 +83,7 @@ struct HttpServer::Daemon {
     if (code == MHD_CONNECTION_NOTIFY_STARTED) {
       const MHD_ConnectionInfo* info =
           MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-      *sender = patience.begun(info->connect_fd);
+      *sender = patience.begun(info->connect_fd, peer_of(connection));
     } else {
       patience.ended(static_cast<HttpSender*>(*sender));
       *sender = nullptr;

@@ -21,8 +21,8 @@ struct HttpHandler {
 };
 
 struct HttpLimits {
-  unsigned connections = 64;
-  unsigned connections_of_a_peer = 32;
+  unsigned connections = 192;
+  unsigned connections_of_a_peer = 96;
   unsigned idle_s = 30;              // a connection on which nothing happens ends
   PatienceLimits patience = {};      // and so does one on which too little happens
   std::size_t memory_bytes = 32768;  // of a connection: request line and headers

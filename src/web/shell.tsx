@@ -1,6 +1,6 @@
 // The frame around every view: header, what is wrong with the connection, dialogues, messages.
 import { useEffect, useRef, useState } from 'preact/hooks';
-import { readKey } from './daemon/key';
+import { mayChange } from './daemon/key';
 import { hasEnded } from './daemon/types';
 import { HistoryView } from './history/history';
 import { JobPage } from './job/job_page';
@@ -16,7 +16,7 @@ import { Notes } from './ui/notes';
 import { jobBadge } from './words';
 
 const LINK_WORDS: Record<Link['kind'], string> = {
-  connecting: 'Connecting', live: 'Live', lost: 'No connection', locked: 'Locked out', key: 'Key needed',
+  connecting: 'Connecting', live: 'Live', lost: 'No connection', key: 'Key needed',
 };
 
 function ThemeButton() {
@@ -45,8 +45,8 @@ function Header({ route, link }: { route: Route; link: Link }) {
         <div class="top-end">
           <span class={`link-state ${link.kind}`} role="status"><i aria-hidden="true" /><span>{LINK_WORDS[link.kind]}</span></span>
           <button type="button" class="icon-button" aria-label="Your key"
-                  onClick={() => askForKey(readKey() === '' ? 'With a key you can upload models and approve, pause and cancel prints from here.'
-                                                            : 'This page has a key. Another one replaces it.')}>
+                  onClick={() => askForKey(mayChange() ? 'This page has a key. Another one replaces it.'
+                                                    : 'With a key you can upload models and approve, pause and cancel prints from here.')}>
             <Icon name="key" />
           </button>
           <ThemeButton />
@@ -57,7 +57,7 @@ function Header({ route, link }: { route: Route; link: Link }) {
 }
 
 function Trouble({ link }: { link: Link }) {
-  if (link.kind !== 'lost' && link.kind !== 'locked') return null;
+  if (link.kind !== 'lost') return null;
   return (
     <div class="banner" role="alert">
       <Icon name="warning" />
@@ -70,7 +70,8 @@ function KeyPage({ link }: { link: Extract<Link, { kind: 'key' }> }) {
   return (
     <section class="card key-page">
       <h1>{link.refusal.what}</h1>
-      <p>Away from its own machine the daemon shows and does things only for those who have a key.</p>
+      <p>The daemon shows and does things only for those who have a key. To look from its own machine a link is enough:
+        <code>packmerger keys link</code> prints one.</p>
       <HowToGetAKey />
       <KeyForm given={() => undefined} />
     </section>

@@ -6,7 +6,7 @@ import type { Job, Printer, UploadRules } from './daemon/types';
 export type Link =
   | { kind: 'connecting' }
   | { kind: 'live' }
-  | { kind: 'lost' | 'locked'; refusal: Refusal }
+  | { kind: 'lost'; refusal: Refusal }
   | { kind: 'key'; refusal: Refusal };
 
 export interface Sending {

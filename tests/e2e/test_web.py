@@ -12,7 +12,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import program
-from web_daemon import STL, Case, Daemon, free_port, is_open, wait_for
+from web_daemon import SETTINGS, STL, Case, Daemon, free_port, is_open, wait_for
 
 
 class Use(Case):
@@ -116,6 +116,18 @@ class Use(Case):
         self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume", key=key)[0], 401)
         self.assertNotIn("guest", self.daemon.shell("keys", "list").stdout)
 
+    def test_a_stream_ends_with_its_key(self):
+        key = self.daemon.shell("keys", "add", "watcher").stdout.strip()
+        connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=60)
+        connection.request("GET", "/api/v1/events", headers={"X-Api-Key": key})
+        stream = connection.getresponse()
+        self.assertTrue(stream.readline())
+        self.assertEqual(self.daemon.shell("keys", "revoke", "watcher").returncode, 0)
+        self.daemon.ask("POST", "/api/v1/printers/objet/pause")
+        self.assertNotIn(b'"paused":true', stream.read())  # to its end
+        self.daemon.ask("POST", "/api/v1/printers/objet/resume")
+        connection.close()
+
 
 WAYS_UP = ["../", "..%2f", "%2e%2e/", "%2e%2e%2f", "..%5c", "..\\", "%252e%252e%252f", "....//", "..;/", "%c0%ae%c0%ae/", ".%00./"]
 GOALS = ["secret", "c.toml", "state/keys.json", "state/jobs.sqlite", "../../../../etc/passwd"]
@@ -215,7 +227,7 @@ class Attack(Case):
 
     def test_slow_and_endless_clients_take_no_memory(self):
         before = self.daemon.memory_kib()
-        held = [socket.create_connection(("127.0.0.1", self.daemon.port)) for _ in range(30)]
+        held = [socket.create_connection(("127.0.0.1", self.daemon.port)) for _ in range(70)]
         for one in held:
             one.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nX: ")
             one.settimeout(1)
@@ -225,9 +237,9 @@ class Attack(Case):
                     one.sendall(b"y" * 4096)
                 except OSError:
                     pass
+        self.assertEqual(self.daemon.ask("GET", "/api/v1/jobs")[0], 200, "while they are all there")
         for one in held:
             one.close()
-        self.assertEqual(self.daemon.ask("GET", "/api/v1/jobs")[0], 200)
         self.assertLess(self.daemon.memory_kib() - before, 60000)
 
 
@@ -241,7 +253,43 @@ class Guesses(Case):
             self.assertIn(status, (401, 429), guess)
             refused += status == 429
         self.assertGreater(refused, 0)
-        self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume")[0], 429, "locked for a minute, even with the right key")
+        self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume")[0], 200, "the right key is always taken")
+        self.assertEqual(self.daemon.ask("GET", "/api/v1/state", key=False)[0], 200, "and so is the page beside the daemon")
+
+
+class Trust(unittest.TestCase):
+    def test_who_asks_from_this_machine_is_not_trusted_unless_it_is_said(self):
+        daemon = Daemon(SETTINGS.replace("[web]", "[web]\ntrust_local = false"))
+        try:
+            self.assertNotIn("trust_local is not set", daemon.said())
+            self.assertEqual(daemon.ask("GET", "/api/v1/state", key=False)[0], 401)
+            self.assertEqual(daemon.ask("GET", "/api/v1/state")[0], 200)
+            self.assertEqual(daemon.ask("GET", "/", key=False)[0], 200, "the page itself tells nothing")
+            told = [word for word in daemon.said().split() if "#look=" in word]
+            links = told + [daemon.shell("keys", "link").stdout.strip()]
+            self.assertEqual(len(links), 2, daemon.said())
+            for link in links:
+                self.assertTrue(link.startswith(f"http://localhost:{daemon.port}/#look="), link)
+                code = link.partition("=")[2]
+                status, content, _ = daemon.ask("POST", "/api/v1/look", code, key=False)
+                self.assertEqual(status, 200, content)
+                key = json.loads(content)["key"]
+                self.assertEqual(daemon.ask("GET", "/api/v1/state", key=key)[0], 200)
+                self.assertEqual(daemon.ask("POST", "/api/v1/printers/objet/pause", key=key)[0], 401)
+                for wrong in (code, code + "x", ""):
+                    self.assertEqual(daemon.ask("POST", "/api/v1/look", wrong, key=False)[0], 401, "a link is good once")
+            self.assertEqual(daemon.ask("POST", "/api/v1/look", "x", {"Origin": "http://evil.example"}, False)[0], 403)
+            self.assertIn("look", daemon.shell("keys", "list").stdout)
+        finally:
+            daemon.close()
+
+    def test_settings_from_before_are_as_they_were_and_told_once(self):
+        daemon = Daemon()
+        try:
+            self.assertEqual(daemon.ask("GET", "/api/v1/state", key=False)[0], 200)
+            self.assertEqual(daemon.said().count("trust_local is not set"), 1)
+        finally:
+            daemon.close()
 
 
 class Reload(unittest.TestCase):

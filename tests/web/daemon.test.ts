@@ -13,10 +13,10 @@ test('events are whole however the stream is cut', () => {
 });
 
 test('refusals are told in the daemon’s words, and in some words whatever comes back', () => {
-  const told = refusalOf(429, '{"error": {"what": "Too many", "hint": "Wait"}}', '41');
-  expect([told.what, told.hint, told.retryAfter_s]).toEqual(['Too many', 'Wait', 41]);
+  const told = refusalOf(429, '{"error": {"what": "Too many", "hint": "Wait"}}');
+  expect([told.status, told.what, told.hint]).toEqual([429, 'Too many', 'Wait']);
   for (const body of ['', '<html>Bad gateway</html>', '{}', 'null', '{"error": 3}'])
-    expect(refusalOf(502, body, 'soon').what).toContain('502');
+    expect(refusalOf(502, body).what).toContain('502');
 });
 
 test('what the daemon would refuse is refused before it is sent', () => {

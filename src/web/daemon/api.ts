@@ -7,7 +7,7 @@ const BASE = '/api/v1/';
 // status 0: no answer came. starts: it is only refused because it starts that print at once.
 export class Refusal extends Error {
   constructor(readonly status: number, readonly what: string, readonly hint: string,
-              readonly retryAfter_s = 0, readonly starts: Start | null = null) {
+              readonly starts: Start | null = null) {
     super(what);
   }
 }
@@ -21,13 +21,12 @@ export function keyHeaders(): Record<string, string> {
 }
 
 // What the daemon's error body says; a proxy's own page says nothing useful.
-export function refusalOf(status: number, body: string, retryAfter: string | null): Refusal {
-  const wait_s = Number(retryAfter ?? 0) || 0;
-  const unknown = new Refusal(status, `The request was refused (${status})`, 'Try again in a moment.', wait_s);
+export function refusalOf(status: number, body: string): Refusal {
+  const unknown = new Refusal(status, `The request was refused (${status})`, 'Try again in a moment.');
   try {
     const { what, hint, starts } = (JSON.parse(body) as { error: Record<string, unknown> }).error;
     if (typeof what !== 'string' || typeof hint !== 'string') return unknown;
-    return new Refusal(status, what, hint, wait_s, typeof starts === 'object' ? starts as Start | null : null);
+    return new Refusal(status, what, hint, typeof starts === 'object' ? starts as Start | null : null);
   } catch {
     return unknown;
   }
@@ -36,13 +35,13 @@ export function refusalOf(status: number, body: string, retryAfter: string | nul
 export async function request(path: string, init: RequestInit = {}): Promise<Response> {
   let reply: Response;
   try {
-    reply = await fetch(BASE + path, { ...init, headers: keyHeaders(), cache: 'no-store' });
+    reply = await fetch(BASE + path, { ...init, headers: keyHeaders() });
   } catch (error) {
     if (error instanceof DOMException && error.name === 'AbortError') throw error;
     throw noAnswer();
   }
   if (reply.ok) return reply;
-  throw refusalOf(reply.status, await reply.text().catch(() => ''), reply.headers.get('Retry-After'));
+  throw refusalOf(reply.status, await reply.text().catch(() => ''));
 }
 
 async function json<T>(path: string, init?: RequestInit): Promise<T> {

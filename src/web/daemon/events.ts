@@ -61,13 +61,10 @@ async function read(control: AbortController): Promise<void> {
   clearTimeout(guard);
 }
 
-// A wrong key is not tried again: ten of them lock this address out.
+// A wrong key, also one of too many (429), is not tried again by itself.
 function lost(refusal: Refusal): void {
-  if (refusal.status === 401) return store.set({ link: { kind: 'key', refusal } });
+  if (refusal.status === 401 || refusal.status === 429) return store.set({ link: { kind: 'key', refusal } });
   failures += 1;
-  const locked = refusal.status === 429;
-  const wait_ms = locked ? 1000 * (refusal.retryAfter_s || 60)
-                         : Math.min(LONGEST_WAIT_MS, 500 * 2 ** Math.min(failures, 5));
-  store.set({ link: { kind: locked ? 'locked' : 'lost', refusal } });
-  again = setTimeout(() => void listen(), wait_ms);
+  store.set({ link: { kind: 'lost', refusal } });
+  again = setTimeout(() => void listen(), Math.min(LONGEST_WAIT_MS, 500 * 2 ** Math.min(failures, 5)));
 }

@@ -51,7 +51,7 @@ function post(form: XMLHttpRequest, file: File, printer: string,
     form.upload.onprogress = (event) => progress(event.total > 0 ? event.loaded / event.total : 0);
     form.onload = () => {
       if (form.status === 201) resolve(JSON.parse(form.responseText) as Job);
-      else reject(refusalOf(form.status, form.responseText, form.getResponseHeader('Retry-After')));
+      else reject(refusalOf(form.status, form.responseText));
     };
     form.onerror = () => reject(noAnswer());
     form.onabort = () => reject(new Refusal(0, 'Stopped', ''));

@@ -2,15 +2,15 @@
 import { ask } from './ask';
 import { complain, say } from './notes';
 import { Refusal } from '../daemon/api';
-import { readKey } from '../daemon/key';
+import { mayChange } from '../daemon/key';
 import { store } from '../store';
 import { startInWords } from '../words';
 
 let waiting: (() => void) | null = null;
 
-// Runs action once there is a key; forgotten when the person closes the dialogue without giving one.
+// Runs action once there is a key that may change something; forgotten when the person closes the dialogue without giving one.
 export function withKey(why: string, action: () => void): void {
-  if (readKey() !== '') return action();
+  if (mayChange()) return action();
   waiting = action;
   store.set({ asksForKey: why });
 }

@@ -19,9 +19,10 @@ TEST(KeyRing, KnowsItsKeysAgain) {
   const std::string mine = keys.add("my browser");
   const std::string other = keys.add("slicer");
   EXPECT_NE(mine, other);
-  EXPECT_EQ(keys.owner(mine), "my browser");
+  EXPECT_EQ(keys.find(mine)->name, "my browser");
   const KeyRing again(file);
-  EXPECT_EQ(again.owner(other), "slicer");
+  EXPECT_EQ(again.find(other)->name, "slicer");
+  EXPECT_FALSE(again.find(other)->looks_only);
   EXPECT_EQ(again.list().size(), 2u);
 }
 
@@ -50,10 +51,41 @@ TEST(KeyRing, WrongAndRevokedKeysOpenNothing) {
   std::string key = keys.add("me");
   for (const std::string& wrong :
        {std::string(), key.substr(1), key + "x", key.substr(0, 45) + "~"})
-    EXPECT_FALSE(keys.owner(wrong)) << wrong;
+    EXPECT_FALSE(keys.find(wrong)) << wrong;
   keys.revoke("me");
-  EXPECT_FALSE(keys.owner(key));
+  EXPECT_FALSE(keys.find(key));
   EXPECT_THROW(keys.revoke("me"), Error);
+}
+
+TEST(KeyRing, ACodeMakesAKeyThatOnlyLooks) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "keys.json";
+  KeyRing keys(file);
+  const std::string code = keys.add_code(0);
+  EXPECT_FALSE(keys.look("guess", 1));
+  const std::optional<std::string> key = keys.look(code, 1);
+  ASSERT_TRUE(key);
+  EXPECT_TRUE(key->starts_with("pm_look_"));
+  EXPECT_FALSE(keys.look(code, 1)) << "it was used";
+  const KeyRing again(file);
+  ASSERT_TRUE(again.find(*key));
+  EXPECT_TRUE(again.find(*key)->looks_only);
+  EXPECT_TRUE(again.empty()) << "nobody can change anything yet";
+  keys.revoke(again.find(*key)->name);
+  EXPECT_FALSE(keys.find(*key));
+}
+
+TEST(KeyRing, OldPagesMakeRoomForNewOnesAndKeysStay) {
+  const TemporaryFolder folder;
+  KeyRing keys(folder.path() / "keys.json");
+  const std::string mine = keys.add("page 3");
+  const std::string first = *keys.look(keys.add_code(0), 0);
+  std::string last;
+  for (int i = 0; i < 20; ++i) last = *keys.look(keys.add_code(0), 0);
+  EXPECT_EQ(keys.list().size(), 21u);
+  EXPECT_FALSE(keys.find(first));
+  EXPECT_TRUE(keys.find(last));
+  EXPECT_TRUE(keys.find(mine));
 }
 
 TEST(KeyRing, RefusesNamesThatAreTakenOrOdd) {

@@ -19,7 +19,7 @@ struct Door {
   TemporaryFolder folder;
   KeyRing keys{folder.path() / "keys.json"};
   std::string key = keys.add("me");
-  WebGuard guard{{"printers.example"}, keys};
+  WebGuard guard{{"printers.example"}, keys, true};
 
   int status(const HttpRequest& request, Access access, double now_s = 0) {
     const auto refusal = guard.refused(request, access, now_s);
@@ -77,16 +77,38 @@ TEST(WebGuard, ChangesNeedAKeyAndReadingFromElsewhereToo) {
       << "a wrong key is told, where none would be needed too";
 }
 
-TEST(WebGuard, WrongKeysLockTheirSenderOut) {
+TEST(WebGuard, WrongKeysAreSlowedDownAndNeverShutOutTheRightOnes) {
   Door door;
   const HttpRequest wrong = request({{"X-Api-Key", "pm_guess"}});
   const HttpRequest right = request({{"X-Api-Key", door.key}});
   for (int i = 0; i < 10; ++i) EXPECT_EQ(door.status(wrong, Access::kChange, i * 0.1), 401);
-  EXPECT_EQ(door.status(right, Access::kChange, 2), 429);
-  HttpRequest elsewhere = right;
+  EXPECT_EQ(door.status(wrong, Access::kChange, 2), 429);
+  EXPECT_EQ(door.status(right, Access::kChange, 2), 200);
+  EXPECT_EQ(door.status(request(), Access::kRead, 2), 200) << "the page beside the daemon, no key";
+  HttpRequest elsewhere = wrong;
   elsewhere.peer = "10.0.0.3";
-  EXPECT_EQ(door.status(elsewhere, Access::kChange, 2), 200);
-  EXPECT_EQ(door.status(right, Access::kChange, 62), 200);
+  EXPECT_EQ(door.status(elsewhere, Access::kChange, 2), 401);
+  EXPECT_EQ(door.status(wrong, Access::kChange, 63), 401) << "forgotten after a minute";
+}
+
+TEST(WebGuard, WhereThisMachineIsNotTrustedNobodyReadsWithoutAKey) {
+  Door door;
+  WebGuard guard({}, door.keys, false);
+  const auto status = [&](const HttpRequest& asked, Access access) {
+    const auto refusal = guard.refused(asked, access, 0);
+    return refusal ? refusal->status : 200;
+  };
+  EXPECT_EQ(status(request(), Access::kRead), 401)
+      << "a proxy that adds no header looks like somebody on this machine";
+  EXPECT_EQ(status(request(), Access::kOpen), 200);
+  EXPECT_EQ(status(request({{"X-Api-Key", door.key}}), Access::kRead), 200);
+}
+
+TEST(WebGuard, AKeyThatLooksChangesNothing) {
+  Door door;
+  const std::string key = *door.keys.look(door.keys.add_code(0), 0);
+  EXPECT_EQ(door.status(request({{"X-Api-Key", key}}), Access::kRead), 200);
+  EXPECT_EQ(door.status(request({{"X-Api-Key", key}}), Access::kChange), 401);
 }
 
 TEST(WebGuard, ManySendersDoNotFillTheMemory) {
@@ -111,7 +133,9 @@ TEST(WebRoutes, EachIsFoundByItsMethodAndPath) {
     EXPECT_NE(route.target, WebTarget::kNone) << asked.path;
     EXPECT_EQ(route.access, text.access);
     const bool reads = text.method == "GET";
-    EXPECT_EQ(text.access, reads ? Access::kRead : Access::kChange) << "changes need a key";
+    const Access needed = reads ? Access::kRead : Access::kChange;
+    EXPECT_EQ(text.access, text.path.ends_with("/look") ? Access::kOpen : needed)
+        << "changes need a key";
     asked.method = "PATCH";
     EXPECT_EQ(route_of(asked).target, WebTarget::kNone);
     EXPECT_NE(route_of(asked).allowed.find(text.method), std::string::npos);

@@ -75,5 +75,22 @@ TEST(Patience, BearsAnswersThatTakeLong) {
   EXPECT_THAT(client.rest(), HasSubstr("at last"));
 }
 
+TEST(Patience, SlowConnectionsDoNotShutOutTheirAddress) {
+  HttpLimits limits;
+  limits.connections_of_a_peer = 40;
+  limits.patience.waiting_of_a_peer = 4;
+  Site site(limits);
+  std::vector<std::unique_ptr<Client>> slow;
+  for (int i = 0; i < 70; ++i) {
+    slow.push_back(std::make_unique<Client>(site.server->port()));
+    slow.back()->send("GET / HTTP/1.1\r\nHost: local");
+    if (i % 10 == 0) {
+      EXPECT_THAT(site.ask(get("/")), StartsWith("HTTP/1.1 200")) << i;
+    }
+  }
+  EXPECT_THAT(site.ask(get("/")), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(slow.front()->rest(), StartsWith("HTTP/1.1 408"));
+}
+
 }  // namespace
 }  // namespace packmerger

@@ -90,6 +90,10 @@ struct Site {
       return {.body = "at last"};
     }
     if (request.path == "/file") return {.type = "text/plain", .file = folder.path() / "there"};
+    if (request.path == "/kept" || request.path == "/immutable")
+      return {.type = "text/plain",
+              .file = folder.path() / "there",
+              .keep = request.path == "/kept" ? Keep::kWhileTheSame : Keep::kForEver};
     if (request.path == "/link") return {.type = "text/plain", .file = folder.path() / "link"};
     return {.body = "{}", .headers = {{"X-Own", "yes"}}};
   }
