@@ -104,7 +104,7 @@ std::vector<WebRouteText> web_routes() {
 
 bool is_job_file(const std::string& name) {
   static const std::regex kNames(
-      R"(job\.json|profile\.toml|preview\.(png|glb)|assembly\.glb|tray(-\d+)?\.(3mf|stl)|program(-\d+)?\.(gcode|x3g)|\d+\.stl)");
+      R"(job\.json|profile\.toml|preview\.(png|glb)|(assembly|page)\.glb|tray(-\d+)?\.(3mf|stl)|program(-\d+)?\.(gcode|x3g)|\d+\.stl)");
   return std::regex_match(name, kNames);
 }
 

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "model/stl.h"
 #include "picture/gltf.h"
+#include "picture/page_scene.h"
 #include "picture/part_colour.h"
 #include "picture/preview.h"
 #include "tray/job_json.h"
@@ -79,32 +80,48 @@ void add_tray(const TrayContent& tray, int number, const fs::path& folder, Write
 }
 
 // Trays after the first stand to its right, a tenth of a plate apart.
-std::string preview_glb(const Job& job) {
-  std::vector<GltfPart> parts;
-  for (const JobPart& part : job.parts) {
-    const double aside = 1.1 * job.profile.build_mm[0] * (part.tray - 1);
-    parts.push_back(
-        {part_name(part), &part.surface, part.pose, part_colour(part.id - 1), Vec3(aside, 0, 0)});
-  }
-  return glb_bytes(parts);
+Vec3 aside_on_tray(const Job& job, const JobPart& part) {
+  return {1.1 * job.profile.build_mm[0] * (part.tray - 1), 0, 0};
 }
 
 // Models after the first stand to its right, so that copies do not hide each other.
-std::string assembly_glb(const Job& job) {
+std::vector<Vec3> models_aside(const Job& job) {
   std::vector<Box3> boxes(job.inputs.size());
   for (const JobPart& part : job.parts)
     boxes[static_cast<std::size_t>(part.model)].extend(bounding_box(part.surface));
-  std::vector<double> aside(boxes.size(), 0);
+  std::vector<Vec3> aside(boxes.size(), Vec3::Zero());
   for (std::size_t i = 1; i < boxes.size(); ++i) {
     const Box3& before = boxes[i - 1];
     const double apart = 0.1 * std::max(before.sizes().x(), boxes[i].sizes().x());
-    aside[i] = aside[i - 1] + before.max().x() - boxes[i].min().x() + apart;
+    aside[i].x() = aside[i - 1].x() + before.max().x() - boxes[i].min().x() + apart;
   }
+  return aside;
+}
+
+std::string preview_glb(const Job& job) {
+  std::vector<GltfPart> parts;
+  for (const JobPart& part : job.parts)
+    parts.push_back({part_name(part), &part.surface, part.pose, part_colour(part.id - 1),
+                     aside_on_tray(job, part)});
+  return glb_bytes(parts);
+}
+
+std::string assembly_glb(const Job& job) {
+  const std::vector<Vec3> aside = models_aside(job);
   std::vector<GltfPart> parts;
   for (const JobPart& part : job.parts)
     parts.push_back({part_name(part), &part.surface, Pose::Identity(), part_colour(part.id - 1),
-                     Vec3(aside[static_cast<std::size_t>(part.model)], 0, 0)});
+                     aside[static_cast<std::size_t>(part.model)]});
   return glb_bytes(parts);
+}
+
+std::string page_scene(const Job& job) {
+  const std::vector<Vec3> aside = models_aside(job);
+  std::vector<PagePart> parts;
+  for (const JobPart& part : job.parts)
+    parts.push_back({part.id, &part.surface, part.pose, aside_on_tray(job, part),
+                     aside[static_cast<std::size_t>(part.model)], part_colour(part.id - 1)});
+  return page_glb(parts);
 }
 
 }  // namespace
@@ -128,6 +145,7 @@ void write_job_folder(const Job& job, const std::vector<TrayFiles>& trays, const
       [&] { write_file_whole(folder.path() / "preview.png", png_bytes(preview_picture(job))); },
       [&] { write_file_whole(folder.path() / "preview.glb", preview_glb(job)); },
       [&] { write_file_whole(folder.path() / "assembly.glb", assembly_glb(job)); },
+      [&] { write_file_whole(folder.path() / "page.glb", page_scene(job)); },
       [&] { write_file_whole(folder.path() / "profile.toml", profile_toml(job.profile)); },
       [&] { write_file_whole(folder.path() / "job.json", json_text(job_json(job))); }};
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -22,8 +22,8 @@ struct TrayFiles {
 // whose result goes there.
 void check_job_folder(const fs::path& out);
 
-// Writes job.json, profile.toml, tray.3mf, tray.stl, parts/, preview.glb, assembly.glb, preview.png
-// and the programs into a temporary sibling of `out` and renames it: afterwards `out` is whole, or
+// Writes job.json, profile.toml, tray.3mf, tray.stl, parts/, preview.glb, assembly.glb, page.glb,
+// preview.png and the programs into a temporary sibling of `out` and renames it: afterwards `out` is whole, or
 // it is absent. trays: one entry per tray, in order. `out` is a path that does not exist in a
 // folder that does.
 //

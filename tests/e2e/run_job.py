@@ -28,7 +28,7 @@ def find_model(name, folder):
 def validate_gltf(job):
     """Failures of the Khronos validator; None where it is not installed."""
     script = program.SOURCE / "tests" / "e2e" / "validate_gltf.js"
-    done = subprocess.run(["node", script, job / "preview.glb", job / "assembly.glb"], capture_output=True, text=True)
+    done = subprocess.run(["node", script, job / "preview.glb", job / "assembly.glb", job / "page.glb"], capture_output=True, text=True)
     if done.returncode == program.SKIPPED:
         return None
     return "" if done.returncode == 0 else done.stdout + done.stderr

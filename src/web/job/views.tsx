@@ -5,6 +5,7 @@ import { Parts } from './parts';
 import { Preview } from './preview';
 import { jobFile, Refusal } from '../daemon/api';
 import type { Job, PackedReport } from '../daemon/types';
+import type { JobScenes } from '../scene/parts';
 import type { Scene } from '../scene/scene';
 import { onTheme } from '../theme';
 
@@ -17,6 +18,19 @@ type Standing = 'loading' | 'drawn' | 'flat';
 
 async function bytesOf(job: Job, file: string): Promise<ArrayBuffer> {
   return (await jobFile(job.id, file)).arrayBuffer();
+}
+
+// Jobs that an earlier version prepared have no small scene.
+async function scenesOf(job: Job): Promise<JobScenes> {
+  const parts = import('../scene/parts');
+  try {
+    return await (await parts).readScenes(await bytesOf(job, 'page.glb'));
+  } catch (error) {
+    if (!(error instanceof Refusal) || error.status !== 404) throw error;
+  }
+  const { readParts } = await parts;
+  const [models, trays] = await Promise.all([bytesOf(job, 'assembly.glb').then(readParts), bytesOf(job, 'preview.glb').then(readParts)]);
+  return { models, trays };
 }
 
 export function Views({ job, report }: { job: Job; report: PackedReport }) {
@@ -32,9 +46,7 @@ export function Views({ job, report }: { job: Job; report: PackedReport }) {
   useEffect(() => {
     let gone = false;
     const open = async (): Promise<void> => {
-      const [{ Scene }, { readParts }, assembly, tray] = await Promise.all([
-        import('../scene/scene'), import('../scene/parts'), bytesOf(job, 'assembly.glb'), bytesOf(job, 'preview.glb')]);
-      const [modelParts, trayParts] = await Promise.all([readParts(assembly), readParts(tray)]);
+      const [{ Scene }, { models: modelParts, trays: trayParts }] = await Promise.all([import('../scene/scene'), scenesOf(job)]);
       if (gone || !modelCanvas.current || !trayCanvas.current) return;
       setColours(new Map(trayParts.map((part) => [part.id, part.colour])));
       const model = new Scene(modelCanvas.current, modelParts, setChosen);

@@ -1,5 +1,5 @@
 // The parts of a job's glTF scene. Its axes are y up and its unit is the metre (docs/JOB_FOLDER.md).
-import { Color, Mesh, MeshStandardMaterial } from 'three';
+import { Color, Mesh, MeshStandardMaterial, type Object3D } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 
 export interface ScenePart {
@@ -8,11 +8,26 @@ export interface ScenePart {
   colour: string;
 }
 
+export interface JobScenes {
+  trays: ScenePart[];
+  models: ScenePart[];
+}
+
+// page.glb: both scenes in one file.
+export async function readScenes(glb: ArrayBuffer): Promise<JobScenes> {
+  const { scenes } = await new GLTFLoader().parseAsync(glb, '');
+  return { trays: partsOf(scenes[0]), models: partsOf(scenes[1]) };
+}
+
+// preview.glb or assembly.glb: one scene.
 export async function readParts(glb: ArrayBuffer): Promise<ScenePart[]> {
-  const { scene } = await new GLTFLoader().parseAsync(glb, '');
+  return partsOf((await new GLTFLoader().parseAsync(glb, '')).scene);
+}
+
+function partsOf(scene: Object3D | undefined): ScenePart[] {
   const parts: ScenePart[] = [];
-  scene.traverse((node) => {
-    const id = Number(/\d+$/.exec(node.name)?.[0]);
+  scene?.traverse((node) => {
+    const id = Number((node.userData as { part?: number }).part ?? /\d+$/.exec(node.name)?.[0]);
     if (!(node instanceof Mesh) || !Number.isInteger(id)) return;
     const own = node.material as MeshStandardMaterial;
     const colour = own.color instanceof Color ? own.color : new Color(0.7, 0.7, 0.7);

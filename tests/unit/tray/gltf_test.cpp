@@ -2,40 +2,13 @@
 #include "picture/gltf.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include <cstring>
-
-#include "base/files.h"
-#include "base/process.h"
 #include "picture/part_colour.h"
+#include "unit/tray/glb_file.h"
 #include "unit/tray/sample_job.h"
 
 namespace packmerger {
 namespace {
-
-using Json = nlohmann::json;
-
-struct Glb {
-  Json json;
-  std::string binary;
-};
-
-Glb read_glb(const std::string& bytes) {
-  const auto word = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + at, 4);
-    return value;
-  };
-  EXPECT_EQ(bytes.substr(0, 4), "glTF");
-  EXPECT_EQ(word(4), 2U);
-  EXPECT_EQ(word(8), bytes.size());
-  const std::size_t length = word(12);
-  Glb glb;
-  glb.json = Json::parse(bytes.substr(20, length));
-  glb.binary = bytes.substr(20 + length + 8);
-  return glb;
-}
 
 std::vector<GltfPart> parts_of(const Job& job) {
   std::vector<GltfPart> parts;
@@ -46,12 +19,8 @@ std::vector<GltfPart> parts_of(const Job& job) {
 }
 
 TEST(Gltf, KhronosValidatorFindsNoError) {
-  const char* told = std::getenv("PACKMERGER_SOURCE");
-  const fs::path source = fs::absolute(told == nullptr ? "." : told);
-  const fs::path packages = source / "node_modules";
-  if (!fs::exists(packages / "gltf-validator"))
-    GTEST_SKIP() << packages.string()
-                 << "/gltf-validator is missing: run `npm ci` in the source tree";
+  const fs::path packages = node_packages();
+  if (packages.empty()) GTEST_SKIP() << kNoValidator;
   const Job job = fixtures::sample_job();
   const TemporaryFolder folder;
   write_file_whole(folder.path() / "all.glb", glb_bytes(parts_of(job)));
@@ -62,13 +31,7 @@ TEST(Gltf, KhronosValidatorFindsNoError) {
   write_file_whole(folder.path() / "flat.glb",
                    glb_bytes({{"flat", &flat, Pose::Identity(), {}, {}}}));
 
-  const fs::path script = source / "tests/unit/tray/validate_glb.js";
-  ProcessSpec spec;
-  spec.argv = {"node", script.string(), packages.string(), (folder.path() / "all.glb").string(),
-               (folder.path() / "flat.glb").string()};
-  const ProcessResult result = run_process(spec, 60, Progress());
-  ASSERT_TRUE(result.status.ok()) << result.err;
-  const Json reports = Json::parse(result.out);
+  const Json reports = validated(packages, {folder.path() / "all.glb", folder.path() / "flat.glb"});
   ASSERT_EQ(reports.size(), 2U);
   for (const Json& report : reports) EXPECT_EQ(report["numErrors"], 0) << report.dump(1);
   EXPECT_EQ(reports[0]["numWarnings"], 0) << reports[0].dump(1);

@@ -49,11 +49,11 @@ TEST_F(JobFolder, HoldsEveryFileOfTheContract) {
   EXPECT_EQ(names_in(out_),
             (std::set<std::string>{"job.json", "profile.toml", "tray.3mf", "tray-2.3mf", "tray.stl",
                                    "tray-2.stl", "parts/01.stl", "parts/02.stl", "parts/03.stl",
-                                   "parts/04.stl", "preview.glb", "assembly.glb", "preview.png",
-                                   "program.gcode", "program-2.gcode"}));
+                                   "parts/04.stl", "preview.glb", "assembly.glb", "page.glb",
+                                   "preview.png", "program.gcode", "program-2.gcode"}));
   EXPECT_EQ(read_file(out_ / "program-2.gcode", kMaxBytes), "G28 X\n");
   EXPECT_TRUE(read_file(out_ / "preview.png", kMaxBytes).starts_with("\x89PNG\r\n"));
-  EXPECT_EQ(names_in(folder_.path()).size(), 15U) << "nothing beside the folder";
+  EXPECT_EQ(names_in(folder_.path()).size(), 16U) << "nothing beside the folder";
 }
 
 TEST_F(JobFolder, ProfileIsTheOneThatJobJsonMeans) {
