@@ -62,7 +62,7 @@ std::string look_link(const WebConfig& web, KeyRing& keys) {
   const std::string host = keys.empty() || !is_one ? "localhost" : web.address;
   const bool is_six = host.find(':') != std::string::npos;
   return "http://" + (is_six ? "[" + host + "]" : host) + ":" + std::to_string(web.port) +
-         "/#look=" + keys.add_code(now_s());
+         "/#look=" + keys.add_code(steady_now_s());
 }
 
 Web::Web(const DaemonConfig& config, KeyRing& keys, WebQuestions& questions, WebEvents& events)
@@ -185,7 +185,7 @@ HttpReply Web::file_of_job(const std::string& id, const std::string& name) {
 }
 
 HttpReply Web::look(const HttpRequest& request) {
-  const std::optional<std::string> key = keys_.look(request.body, now_s());
+  const std::optional<std::string> key = keys_.look(request.body, steady_now_s());
   if (!key)
     return web_error(401, Fault::kUsage, "This link was used already, or is too old",
                      "packmerger keys link prints another.");
