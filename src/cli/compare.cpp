@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "base/names.h"
 #include "cli/plan_options.h"
 #include "cli/verb.h"
 #include "job/comparison_table.h"
@@ -34,7 +35,7 @@ void run(const Arguments& arguments) {
     all[job.profile.id] = comparison_json(job.estimates);
     if (!arguments.json) fmt::print("{}\n", comparison_table(job.estimates, title_of(job.profile)));
     for (const Warning& warning : job.warnings)
-      fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
+      fmt::print(stderr, "warning: {} ({})\n", printable(warning.text), warning.code);
   }
   if (arguments.json) std::cout << json_text(all);
 }

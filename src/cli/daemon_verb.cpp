@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "base/names.h"
 #include "daemon/client.h"
 #include "job/comparison_table.h"
 
@@ -67,11 +68,7 @@ std::string time_text(const nlohmann::json& unix_s) {
 }
 
 std::string plain_text(const nlohmann::json& value) {
-  std::string text = value.is_string() ? value.get<std::string>() : "";
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
-  return text;
+  return value.is_string() ? printable(value.get<std::string>()) : "";
 }
 
 std::string text_of(const nlohmann::json& object, const char* key) {

@@ -2,18 +2,21 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <sstream>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "cli/verb.h"
 
 namespace {
 
 using packmerger::Error;
 using packmerger::Fault;
+using packmerger::printable_lines;
 
 int report(const Error& error) {
-  std::cerr << "error: " << error.what() << ".\n";
-  if (!error.hint().empty()) std::cerr << "hint: " << error.hint() << "\n";
+  std::cerr << "error: " << printable_lines(error.what()) << ".\n";
+  if (!error.hint().empty()) std::cerr << "hint: " << printable_lines(error.hint()) << "\n";
   return error.exit_code();
 }
 
@@ -25,7 +28,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // --help, --version
     return program.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    program.exit(error, std::cout, std::cerr);
+    std::ostringstream text;
+    program.exit(error, std::cout, text);
+    std::cerr << printable_lines(text.str());
     return static_cast<int>(Fault::kUsage);
   }
   std::cout.flush();

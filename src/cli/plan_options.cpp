@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/names.h"
+
 namespace packmerger::cli {
 namespace {
 
@@ -79,8 +81,8 @@ std::string sizes_of(const Job& job) {
     while (next < job.inputs.size() && job.inputs[next].sha256 == job.inputs[i].sha256) ++next;
     const std::string copies = next - i > 1 ? fmt::format(", {} copies", next - i) : "";
     const Vec3 size = bounding_box(job.models[i]).sizes();
-    text += fmt::format("{}: {:.1f} x {:.1f} x {:.1f} mm{}\n", job.inputs[i].file, size.x(),
-                        size.y(), size.z(), copies);
+    text += fmt::format("{}: {:.1f} x {:.1f} x {:.1f} mm{}\n", printable(job.inputs[i].file),
+                        size.x(), size.y(), size.z(), copies);
     i = next;
   }
   return text;

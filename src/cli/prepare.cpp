@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "base/names.h"
 #include "cli/plan_options.h"
 #include "cli/ready_program.h"
 #include "cli/verb.h"
@@ -37,7 +38,7 @@ void tell(const Job& job, const std::string& out) {
   fmt::print("Prepared: {}, {} part{}, {:.1f} mm high, in {}\n", job.variant, job.parts.size(),
              job.parts.size() == 1 ? "" : "s", job.height_mm, out);
   for (const Warning& warning : job.warnings)
-    fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
+    fmt::print(stderr, "warning: {} ({})\n", printable(warning.text), warning.code);
 }
 
 // Options that make sense for a ready program; the others are about models.
@@ -70,7 +71,7 @@ void take_as_it_is(const Arguments& arguments, const Profile& profile) {
   }
   fmt::print("{}", told_of(program));
   for (const Warning& warning : program.warnings)
-    fmt::print(stderr, "warning: {} ({})\n", warning.text, warning.code);
+    fmt::print(stderr, "warning: {} ({})\n", printable(warning.text), warning.code);
 }
 
 void run(const Arguments& arguments, const CLI::App& verb) {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "cli/daemon_verb.h"
 #include "cli/print_dialogue.h"
 #include "cli/verb.h"
@@ -76,9 +77,10 @@ void deliver(const Arguments& arguments) {
   const std::filesystem::path from =
       std::filesystem::absolute(arguments.folder + "/.").lexically_normal().parent_path();
   const std::filesystem::path target =
-      hand_over(arguments.folder, arguments.to, from.filename().string());
+      hand_over(arguments.folder, arguments.to, portable_name(from.filename().string()));
   if (arguments.json) return print_json({{"state", "handed_over"}, {"folder", target.string()}});
-  fmt::print("Handed over in {}; open it in the printer's own software.\n", target.string());
+  fmt::print("Handed over in {}; open it in the printer's own software.\n",
+             printable(target.string()));
 }
 
 void run(const Arguments& arguments) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "base/names.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/names.h"
 #include "daemon/backoff.h"
 #include "daemon/job_view.h"
 #include "daemon/move_file.h"
@@ -15,9 +16,9 @@ constexpr int kMostPrints = 100;  // that a correction is learned from, the newe
 
 // A folder's name for people: the model's name and the job's number.
 std::string handoff_name(const JobRecord& job) {
-  std::string stem = fs::path(printable(job.name)).stem().string();
-  stem.resize(std::min<std::size_t>(stem.size(), 200));
-  return stem + "-" + std::to_string(job.id);
+  const std::string number = "-" + std::to_string(job.id);
+  return portable_name(first_bytes(fs::path(job.name).stem().string(), 150 - number.size()) +
+                       number);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // How the foreman finds the printer for a model that was dropped for any of them.
 #include <algorithm>
 
+#include "base/names.h"
 #include "daemon/choose_printer.h"
 #include "daemon/foreman.h"
 #include "daemon/model_options.h"

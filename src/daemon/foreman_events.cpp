@@ -1,6 +1,7 @@
 // How the foreman takes what the other threads tell.
 #include <algorithm>
 
+#include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/move_file.h"
 #include "daemon/progress_file.h"

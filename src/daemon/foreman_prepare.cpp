@@ -1,6 +1,7 @@
 // How the foreman has jobs prepared, and which it approves by itself.
 #include <algorithm>
 
+#include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/job_file.h"
 #include "daemon/job_folder.h"

@@ -1,6 +1,7 @@
 // What people ask the foreman for.
 #include <algorithm>
 
+#include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/job_file.h"
 #include "daemon/model_options.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/names.h"
 
 namespace packmerger {
 namespace {
@@ -45,15 +46,8 @@ std::vector<std::string_view> job_file_endings() {
 }
 
 std::string job_file_name(std::string_view given) {
-  std::string name(given.substr(given.find_last_of("/\\") + 1));
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
-  if (name.size() > kLongestName) {
-    name.erase(0, name.size() - kLongestName);
-    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
-    name.erase(0, static_cast<std::size_t>(std::find_if_not(name.begin(), name.end(), continues) -
-                                           name.begin()));  // the rest of a cut UTF-8 character
-  }
+  std::string name =
+      last_bytes(printable(given.substr(given.find_last_of("/\\") + 1), '_'), kLongestName);
   name.erase(0, std::min(name.find_first_not_of(". ~"), name.size()));
   if (kind_of_file(name) == FileKind::kUnknown)
     throw Error(Fault::kBadInput, "This is nothing that PackMerger takes",

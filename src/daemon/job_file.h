@@ -29,8 +29,8 @@ inline bool is_program(std::string_view name) { return is_program(kind_of_file(n
 std::vector<std::string_view> job_file_endings();
 
 // The last part of what somebody calls a file, as a plain name in a folder: never a way out of it,
-// not hidden, without control characters, at most 200 bytes. Throws Error{kBadInput} where nothing
-// is left of it, or its ending is of no kind above.
+// not hidden, without characters that cannot be shown, at most 200 bytes. Throws Error{kBadInput}
+// where nothing is left of it, or its ending is of no kind above.
 std::string job_file_name(std::string_view given);
 
 // Throws Error{kBadInput}, in words for people, when a printer of this profile cannot be sent a

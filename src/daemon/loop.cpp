@@ -15,6 +15,7 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/names.h"
 #include "daemon/api.h"
 #include "daemon/crew_threads.h"
 #include "daemon/foreman.h"

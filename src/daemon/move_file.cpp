@@ -13,6 +13,7 @@
 
 #include "base/descriptor.h"
 #include "base/error.h"
+#include "base/names.h"
 
 namespace packmerger {
 namespace {
@@ -59,14 +60,6 @@ void copy_bytes(const fs::path& from, int in, const fs::path& to, int out) {
   }
 }
 
-// At most `bytes` bytes, cut between two UTF-8 characters.
-std::string cut(std::string text, std::size_t bytes) {
-  if (text.size() <= bytes) return text;
-  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
-  text.resize(bytes);
-  return text;
-}
-
 }  // namespace
 
 bool is_taken(const fs::path& path) {
@@ -111,11 +104,12 @@ void move_new(const fs::path& from, const fs::path& to) {
 
 fs::path free_path(const fs::path& folder, const std::string& name) {
   const fs::path plain(name);
-  const std::string extension = cut(plain.extension().string(), 32);
+  const std::string extension = first_bytes(plain.extension().string(), 32);
   for (int number = 1;; ++number) {
     const std::string tail =
         (number == 1 ? std::string() : " (" + std::to_string(number) + ")") + extension;
-    const fs::path path = folder / (cut(plain.stem().string(), kMaxName - tail.size()) + tail);
+    const fs::path path =
+        folder / (first_bytes(plain.stem().string(), kMaxName - tail.size()) + tail);
     const bool taken =
         is_taken(path) || std::any_of(kBeside.begin(), kBeside.end(), [&](std::string_view suffix) {
           return is_taken(note_beside(path, suffix));
@@ -126,15 +120,7 @@ fs::path free_path(const fs::path& folder, const std::string& name) {
 
 fs::path note_beside(const fs::path& file, std::string_view suffix) {
   return file.parent_path() /
-         (cut(file.filename().string(), kMaxName - suffix.size()) + std::string(suffix));
-}
-
-std::string printable(std::string_view text) {
-  std::string result(text);
-  std::replace_if(
-      result.begin(), result.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
-  return result;
+         (first_bytes(file.filename().string(), kMaxName - suffix.size()) + std::string(suffix));
 }
 
 }  // namespace packmerger

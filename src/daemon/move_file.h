@@ -35,7 +35,4 @@ fs::path note_beside(const fs::path& file, std::string_view suffix);
 // NAME.preview.png.
 inline fs::path picture_beside(const fs::path& file) { return note_beside(file, ".preview.png"); }
 
-// For messages: control characters become "?".
-std::string printable(std::string_view text);
-
 }  // namespace packmerger

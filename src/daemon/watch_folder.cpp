@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "daemon/backoff.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"

@@ -1,5 +1,6 @@
 // Requests to the daemon, and what went wrong with one in words.
 import { readKey } from './key';
+import { parsed } from './shown';
 import type { Job, Report, Start, UploadRules } from './types';
 
 const BASE = '/api/v1/';
@@ -24,7 +25,7 @@ export function keyHeaders(): Record<string, string> {
 export function refusalOf(status: number, body: string): Refusal {
   const unknown = new Refusal(status, `The request was refused (${status})`, 'Try again in a moment.');
   try {
-    const { what, hint, starts } = (JSON.parse(body) as { error: Record<string, unknown> }).error;
+    const { what, hint, starts } = parsed<{ error: Record<string, unknown> }>(body).error;
     if (typeof what !== 'string' || typeof hint !== 'string') return unknown;
     return new Refusal(status, what, hint, typeof starts === 'object' ? starts as Start | null : null);
   } catch {
@@ -45,7 +46,7 @@ export async function request(path: string, init: RequestInit = {}): Promise<Res
 }
 
 async function json<T>(path: string, init?: RequestInit): Promise<T> {
-  return (await request(path, init)).json() as Promise<T>;
+  return parsed<T>(await (await request(path, init)).text());
 }
 
 const filePath = (id: number, file: string): string => `jobs/${id}/files/${encodeURIComponent(file)}`;

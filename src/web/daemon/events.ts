@@ -1,5 +1,6 @@
 // Keeps the store up to date: one stream of events, begun again whenever it ends.
 import { noAnswer, Refusal, request } from './api';
+import { parsed } from './shown';
 import { EventReader } from './sse';
 import { store } from '../store';
 import type { State } from './types';
@@ -54,7 +55,7 @@ async function read(control: AbortController): Promise<void> {
     guard = setTimeout(() => control.abort(), SILENCE_MS);
     for (const data of events.take(piece.value)) {
       failures = 0;
-      const { result } = JSON.parse(data) as { result: State };
+      const { result } = parsed<{ result: State }>(data);
       store.set({ ...result, link: { kind: 'live' } });
     }
   }

@@ -1,5 +1,6 @@
 // Models on their way to the daemon, one after the other. XMLHttpRequest, because fetch tells no progress.
 import { keyHeaders, noAnswer, Refusal, refusalOf } from './api';
+import { parsed, shown } from './shown';
 import { forbids } from './upload_rules';
 import { store, type Sending } from '../store';
 import type { Job } from './types';
@@ -26,7 +27,7 @@ export function send(files: readonly File[], printer: string, arrived: (job: Job
       form.abort();
       dismiss(id);
     };
-    store.set({ sending: [...store.get().sending, { id, name: file.name, printer, fraction: 0, refusal, stop }] });
+    store.set({ sending: [...store.get().sending, { id, name: shown(file.name), printer, fraction: 0, refusal, stop }] });
     if (refusal) continue;
     queue = queue.then(async () => {
       if (!store.get().sending.some((one) => one.id === id)) return;
@@ -50,7 +51,7 @@ function post(form: XMLHttpRequest, file: File, printer: string,
     for (const [name, value] of Object.entries(keyHeaders())) form.setRequestHeader(name, value);
     form.upload.onprogress = (event) => progress(event.total > 0 ? event.loaded / event.total : 0);
     form.onload = () => {
-      if (form.status === 201) resolve(JSON.parse(form.responseText) as Job);
+      if (form.status === 201) resolve(parsed<Job>(form.responseText));
       else reject(refusalOf(form.status, form.responseText));
     };
     form.onerror = () => reject(noAnswer());

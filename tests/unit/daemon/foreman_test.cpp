@@ -73,6 +73,23 @@ TEST(Foreman, WhatDoesNotPayAndWhereAskingIsWantedWaitsForApproval) {
   EXPECT_EQ(shop.job(2).state, JobState::kHandedOver);
 }
 
+TEST(Foreman, AHandOverFoldersNameCanBeHeldByEverySystem) {
+  Workshop shop;
+  const std::string longest = std::string(199, 'x') + "\u00FC.stl";
+  std::int64_t id = 0;
+  for (const std::string& model :
+       {std::string("a:b?\u202Ec.stl"), std::string("CON.v2.stl"), longest}) {
+    shop.drop("hand", model);
+    shop.prepare(*shop.prepare_order());
+    shop.foreman_->approve(++id);
+    shop.foreman_->advance(shop.now_s_);
+    const std::string name = shop.send_order("hand")->handoff_name;
+    const std::string number = "-" + std::to_string(id);
+    EXPECT_EQ(name, id == 1 ? "a_b__c-1" : id == 2 ? "_CON.v2-2" : std::string(148, 'x') + number);
+    shop.tell(SendEnded{id, SendOutcome::kDone, {}, "handed over in /x"});
+  }
+}
+
 TEST(Foreman, HeldPausedAndDisconnectedJobsWait) {
   Workshop shop;
   shop.drop("sim", "a.stl");

@@ -31,6 +31,7 @@ TEST(JobFile, NamesNeverLeadElsewhere) {
   EXPECT_EQ(job_file_name("C:\\prints\\b.stl"), "b.stl");
   EXPECT_EQ(job_file_name("..hidden.gcode"), "hidden.gcode");
   EXPECT_EQ(job_file_name("a\nb.gcode"), "a_b.gcode");
+  EXPECT_EQ(job_file_name("a\u202Eedocg.stl"), "a_edocg.stl") << "shown as gcode.lts turned round";
   for (const char* name : {"", "/", "..", ".stl", "~.gcode", "a/", "../..", "x.exe", "a.gcode/"})
     EXPECT_EQ(fault_of([&] { job_file_name(name); }), Fault::kBadInput) << name;
 }

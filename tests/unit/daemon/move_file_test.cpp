@@ -77,9 +77,5 @@ TEST(MoveFile, FreePathCountsUpAndStaysWithinTheLimits) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 5);
 }
 
-TEST(MoveFile, MessagesHoldNoControlCharacters) {
-  EXPECT_EQ(printable("a\nb\x1b[2J\xC3\xBC"), "a?b?[2J\xC3\xBC");
-}
-
 }  // namespace
 }  // namespace packmerger
