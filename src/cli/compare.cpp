@@ -20,6 +20,7 @@ struct Arguments {
 };
 
 void run(const Arguments& arguments) {
+  check_profile_given(!arguments.profiles.empty());
   std::vector<Profile> profiles;
   for (const std::string& name : arguments.profiles)
     profiles.push_back(chosen_profile(name, arguments.plan));
@@ -49,7 +50,6 @@ void add_compare(CLI::App& program) {
   add_plan_options(*verb, arguments->plan);
   verb->add_option("--profile", arguments->profiles, "a profile's id or path; may be given again")
       ->type_name("PROFILE")
-      ->required()
       ->take_all();
   verb->add_flag("--json", arguments->json, "prints {profile id: estimates}");
   verb->callback([arguments] { run(*arguments); });

@@ -1,15 +1,20 @@
 // packmerger VERB …: parses the command line, runs one verb, and turns an Error into its exit code.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/names.h"
+#include "base/nearest.h"
 #include "cli/verb.h"
 
 namespace {
 
+using packmerger::did_you_mean;
 using packmerger::Error;
 using packmerger::Fault;
 using packmerger::printable_lines;
@@ -20,9 +25,26 @@ int report(const Error& error) {
   return error.exit_code();
 }
 
+// A word where a verb belongs, which CLI11 would only call unexpected.
+void check_verbs(const CLI::App& program, int argc, char** argv) {
+  const CLI::App* verb = &program;
+  std::string spoken = "packmerger";
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+    std::vector<std::string> known;
+    for (const CLI::App* one : verb->get_subcommands({})) known.push_back(one->get_name());
+    if (known.empty()) return;
+    if (std::find(known.begin(), known.end(), argv[i]) == known.end())
+      throw Error(Fault::kUsage, spoken + " has no verb \"" + argv[i] + "\"",
+                  did_you_mean(argv[i], known) + "`" + spoken + " --help` lists its verbs.");
+    verb = verb->get_subcommand(argv[i]);
+    spoken += std::string(" ") + argv[i];
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App program;
   packmerger::cli::add_verbs(program);
+  check_verbs(program, argc, argv);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version

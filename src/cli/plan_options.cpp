@@ -1,10 +1,12 @@
 #include "cli/plan_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <map>
 
+#include "base/error.h"
 #include "base/names.h"
 
 namespace packmerger::cli {
@@ -65,6 +67,13 @@ PlanOptions plan_options(const PlanArguments& arguments) {
   options.seed = arguments.seed;
   options.budget_s = arguments.budget_s;
   return options;
+}
+
+void check_profile_given(bool given) {
+  if (given) return;
+  throw Error(Fault::kUsage, "No printer was named",
+              fmt::format("Name one with --profile: {}, or the path of a TOML file.",
+                          fmt::join(profile_ids(), ", ")));
 }
 
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments) {

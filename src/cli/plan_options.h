@@ -31,6 +31,9 @@ void add_plan_options(CLI::App& verb, PlanArguments& arguments);
 
 PlanOptions plan_options(const PlanArguments& arguments);
 
+// Throws Error{kUsage}, which lists the profiles, where none was named.
+void check_profile_given(bool given);
+
 // Reads the profile and applies --set.
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments);
 

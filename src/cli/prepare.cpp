@@ -75,6 +75,7 @@ void take_as_it_is(const Arguments& arguments, const Profile& profile) {
 }
 
 void run(const Arguments& arguments, const CLI::App& verb) {
+  check_profile_given(!arguments.profile.empty());
   const Profile profile = chosen_profile(arguments.profile, arguments.plan);
   const auto& models = arguments.plan.models;
   if (std::any_of(models.begin(), models.end(),
@@ -104,13 +105,15 @@ void add_prepare(CLI::App& program) {
                                           "is checked and taken as it is");
   add_plan_options(*verb, arguments->plan);
   verb->add_option("--profile", arguments->profile, "a profile's id, or the path of a TOML file")
-      ->type_name("PROFILE")
-      ->required();
+      ->type_name("PROFILE");
   verb->add_option("--out", arguments->out, "the job folder to make; it must not exist")
       ->type_name("FOLDER")
       ->required();
-  verb->add_option("--variant", arguments->variant, "what is prepared to be printed")
-      ->transform(CLI::CheckedTransformer(kVariants))
+  verb->add_option("--variant", arguments->variant,
+                   "what is prepared to be printed: the parts packed, the whole model hollow or "
+                   "solid, or the cheapest of these")
+      ->transform(CLI::CheckedTransformer(kVariants).description(""))
+      ->type_name("packed|hollow|solid|cheapest")
       ->default_str("packed");
   verb->add_flag("--json", arguments->json, "prints job.json instead of the table");
   verb->callback([arguments, verb] { run(*arguments, *verb); });

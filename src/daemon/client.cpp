@@ -24,7 +24,8 @@ constexpr time_t kTimeout_s = 10;
 constexpr std::size_t kMaxReplyBytes = std::size_t{64} << 20;
 
 constexpr const char* kStartIt =
-    "Start it with packmergerd --config FILE, or name its socket with --socket.";
+    "Start it with packmergerd --config FILE, or name its socket with --socket; the package's "
+    "service has it at /run/packmerger/packmergerd.sock.";
 
 [[noreturn]] void not_there(const std::filesystem::path& socket, const std::string& why,
                             const char* hint = kStartIt) {

@@ -1,6 +1,7 @@
 #include "model/printer.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -9,6 +10,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/nearest.h"
 #include "base/process.h"
 #include "model/derived_profile.h"
 #include "model/profile_file.h"
@@ -68,8 +70,10 @@ fs::path profile_path(std::string_view id_or_path) {
   fs::path path = is_profile_id(id) ? find_profile(id, profile_folders()) : fs::path();
   if (path.empty())
     throw Error(Fault::kNoInput, fmt::format("There is no profile \"{}\"", id),
-                "`packmerger profiles list` shows those that are there; a path must contain a "
-                "slash or end in .toml.");
+                fmt::format("{}There are {}. For another printer write a profile of your own on "
+                            "the base of the nearest (docs/PROFILES.md); its path must contain a "
+                            "slash or end in .toml.",
+                            did_you_mean(id, profile_ids()), fmt::join(profile_ids(), ", ")));
   return path;
 }
 

@@ -58,6 +58,24 @@ class Usage(CommandLine):
             with self.subTest(" ".join(map(str, wrong[:2]))):
                 self.expect(2, *wrong)
 
+    def test_what_was_mistyped_is_named(self):
+        self.assertIn('Did you mean "prepare"?', self.expect(2, "prepre", self.sphere).err)
+        self.assertIn('Did you mean "cancel"?', self.expect(2, "jobs", "cancle", "3").err)
+        near = self.expect(66, "prepare", self.sphere, "--profile", "replicater", "--out", self.folder / "job").err
+        self.assertIn('Did you mean "replicator"?', near)
+        for err in (self.expect(66, "compare", self.sphere, "--profile", "ender3").err,
+                    self.expect(2, "compare", self.sphere).err,
+                    self.expect(2, "prepare", self.sphere, "--out", self.folder / "job").err):
+            self.assertIn("marlin, objet30, replicator, uprint", err)
+
+    def test_a_daemon_that_is_not_there_may_be_the_package_s(self):
+        err = self.expect(69, "jobs", "list", "--socket", self.folder / "none.sock").err
+        self.assertIn("/run/packmerger/packmergerd.sock", err)
+
+    def test_help_reads_like_words(self):
+        text = " ".join(program.run("prepare", "--help").out.split())
+        self.assertIn("--variant packed|hollow|solid|cheapest", text)
+
     def test_help_goes_to_stdout(self):
         for verb in ([], ["prepare"], ["compare"], ["profiles"], ["send"], ["calibrate"], ["simulate"], ["jobs"], ["printers"]):
             with self.subTest(" ".join(verb)):
