@@ -11,6 +11,7 @@
 namespace packmerger {
 namespace {
 
+constexpr double kCuraPlaceholderS = 6666;
 constexpr double kMost = 1e9;  // of any figure; what is larger is a mistake
 constexpr std::size_t kMostName = 80;
 
@@ -125,6 +126,8 @@ SlicerComments read_slicer_comments(std::string_view gcode) {
     }
     return true;
   });
+  // what CuraEngine writes before it knows, and leaves there where Cura is not around it
+  if (told.time_s == kCuraPlaceholderS && !told.filament_mm) told.time_s.reset();
   return told;
 }
 

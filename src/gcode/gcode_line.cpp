@@ -21,6 +21,9 @@ void skip_spaces_and_brackets(std::string_view& text) {
   }
 }
 
+// No machine's; larger ones would only overflow where they are used.
+constexpr double kLargest = 1e9;
+
 // Takes a number off the front: "-1.5", "+2", ".2". Empty when there is none.
 std::optional<double> take_number(std::string_view& text) {
   std::string_view rest = text;
@@ -28,7 +31,7 @@ std::optional<double> take_number(std::string_view& text) {
   double number = 0;
   const auto [end, fault] =
       std::from_chars(rest.data(), rest.data() + rest.size(), number, std::chars_format::fixed);
-  if (fault != std::errc() || !std::isfinite(number)) return std::nullopt;
+  if (fault != std::errc() || !(std::abs(number) <= kLargest)) return std::nullopt;
   text = rest.substr(static_cast<std::size_t>(end - rest.data()));
   return number;
 }

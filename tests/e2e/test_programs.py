@@ -91,11 +91,12 @@ class Prepare(unittest.TestCase):
                     archive.writestr(f"Metadata/plate_{plate}.gcode", gcode())
             return (self.folder / "made.3mf").read_bytes()
 
-        result = self.prepare(sliced(1), "marlin", "--json", name="plate.gcode.3mf")
+        plate = sliced(1)
+        result = self.prepare(plate, "marlin", "--json", name="plate.gcode.3mf")
         self.assertEqual(result.code, 0, str(result))
         self.assertEqual((self.folder / "job/program.gcode").read_bytes(), gcode())
         self.assertEqual(json.loads(result.out)["inputs"],
-                         [{"file": "plate.gcode.3mf", "sha256": hashlib.sha256(sliced(1)).hexdigest()}])
+                         [{"file": "plate.gcode.3mf", "sha256": hashlib.sha256(plate).hexdigest()}])
         shutil.rmtree(self.folder / "job")
         for data, name, words in ((sliced(1, 2), "a.gcode.3mf", "2 plates"), (sliced(), "a.gcode.3mf", "without a sliced plate"),
                                   (sliced(1), "a.3mf", "sliced program")):

@@ -74,7 +74,7 @@ class Use(Case):
         self.assertEqual((status, rules["most_bytes"]), (200, 1048576))
         for ending in rules["endings"]:
             status, content, _ = self.daemon.upload(name=b"a" + ending.encode(), content=STL)
-            if ending in (".gcode", ".gco", ".g", ".x3g", ".s3g"):
+            if ending in (".gcode", ".gco", ".g", ".gcode.3mf", ".x3g", ".s3g"):
                 self.assertEqual(status, 422, content)  # this printer is handed documents
             else:
                 self.assertEqual(status, 201, content)

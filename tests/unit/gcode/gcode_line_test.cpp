@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace packmerger {
 namespace {
 
@@ -31,6 +33,7 @@ TEST(GcodeLine, WordsAloneSubCodesAndText) {
   EXPECT_EQ(marlin("T1").letter(), 'T');
   EXPECT_FALSE(marlin("G1 X5 #3").readable());
   EXPECT_FALSE(marlin("hello").readable());
+  EXPECT_FALSE(marlin("G2 X5 I" + std::string(200, '9')).readable());
 }
 
 // Marlin reads words between brackets, gpx does not; most Marlins pass over small letters.
