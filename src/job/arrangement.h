@@ -11,6 +11,9 @@
 
 namespace packmerger {
 
+// Kept between parts even where the profile asks for no gap: what touches would be printed as one.
+inline constexpr double kLeastGap_mm = 0.001;
+
 struct Arrangement {
   std::vector<JobPart> parts;                      // ids 1, 2, … in order
   std::vector<int> removal_order;                  // ids

@@ -1,11 +1,10 @@
 #include "job/pack_models.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <optional>
 #include <utility>
 
-#include "pack/exact_gap.h"
+#include "job/promises.h"
 #include "pack/pack.h"
 #include "printers/packing_cost.h"
 #include "shape/adjacency.h"
@@ -107,23 +106,6 @@ void lift_above_plate(Arrangement& arrangement) {
   }
 }
 
-// By how much the worst promise on distances is missed, mm; at most 0 when all are kept.
-double shortfall(const Arrangement& arrangement, const Profile& profile) {
-  constexpr double kRounding = 1e-4;  // what single precision in the files may take, mm
-  const Room room = room_of(profile);
-  double worst = 0;
-  for (const Tray& tray : trays_of(arrangement)) {
-    const double gap = least_gap_mm(tray.parts, profile.pack.gap_mm);
-    worst = std::max(worst, profile.pack.gap_mm - gap - kRounding);
-    for (const Mesh& part : tray.parts) {
-      const Box3 box = bounding_box(part);
-      worst = std::max({worst, (room.corner_mm - box.min()).maxCoeff() - kRounding,
-                        (box.max() - room.corner_mm - room.size_mm).maxCoeff() - kRounding});
-    }
-  }
-  return worst;
-}
-
 // As many as the profile asks for of each model that is divided for the printer; the paper's
 // clusters merge as it pays.
 int most_parts(const Models& models, const Profile& profile) {
@@ -155,7 +137,7 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
     }
   }
   problem.build_mm = room_of(profile).size_mm;
-  problem.gap_mm = profile.pack.gap_mm;
+  problem.gap_mm = std::max(profile.pack.gap_mm, kLeastGap_mm);
   problem.grid_mm = profile.pack.grid_mm;
   problem.rotation_step = radians(profile.pack.rotation_step_deg);
   problem.support_angle = radians(profile.support_angle_deg);
@@ -174,19 +156,18 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
 Arrangement pack_models(const Models& models, const Profile& profile, std::uint64_t seed,
                         double budget_s, const Progress& progress) {
   PackProblem problem = packing_problem(models, profile, seed, budget_s);
-  double missing = 0;
+  std::optional<BrokenPromise> broken;
   for (int attempt = 0; attempt < 3; ++attempt) {
     const Packing packing = pack(problem, progress);
     Arrangement arrangement = arrange(models, problem, packing, room_of(profile), progress);
     lift_above_plate(arrangement);
     centre(arrangement, profile);
-    missing = shortfall(arrangement, profile);
-    if (missing <= 0) return arrangement;
-    problem.gap_mm += missing + 0.05;
-    problem.build_mm -= Vec3::Constant(missing);
+    broken = broken_promise(arrangement, profile.pack.gap_mm, room_of(profile), progress);
+    if (!broken) return arrangement;
+    problem.gap_mm += broken->missing_mm + 0.05;
+    problem.build_mm -= Vec3::Constant(broken->missing_mm);
   }
-  throw Error(Fault::kInternal,
-              fmt::format("The packed parts miss their distances by {:.3f} mm", missing),
+  throw Error(Fault::kInternal, broken->what + ", and another layout did not help",
               "Try another --seed, or a finer --set grid_mm, and report this model.");
 }
 

@@ -18,9 +18,10 @@ PackProblem packing_problem(const std::vector<std::shared_ptr<const Divided>>& m
                             const Profile& profile, std::uint64_t seed, double budget_s);
 
 // models: one per input, in order; copies of one input may share an object. Every promise of the
-// job folder on geometry is checked here on the exact meshes (closed parts, inside the build
-// volume, at least gap_mm apart): what cannot keep it is packed again with more room and, after
-// some tries, refused with Error{kInternal}. Throws Error{kBadInput} when a part fits no tray.
+// job folder on geometry is proved here on the points that are written (promises.h), after packing
+// has closed and turned the parts: a layout that does not keep them is packed again with more room
+// and, after some tries, refused with Error{kInternal}. Throws Error{kBadInput} when a part fits no
+// tray.
 Arrangement pack_models(const std::vector<std::shared_ptr<const Divided>>& models,
                         const Profile& profile, std::uint64_t seed, double budget_s,
                         const Progress& progress);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "job/promises.h"
 #include "job/timings.h"
 #include "printers/packing_cost.h"
 #include "printers/program.h"
@@ -33,6 +34,15 @@ Arrangement take(Plan& plan, Variant variant) {
   if (variant == Variant::kPacked && plan.not_packed) throw *plan.not_packed;
   throw Error(Fault::kBadInput, "The model does not fit the printer in one piece",
               "Use --variant packed, which divides it into parts that fit.");
+}
+
+// Whatever way was chosen: nothing is written that breaks a promise.
+void prove(const Arrangement& arrangement, const Profile& profile, const Progress& progress) {
+  progress.report("proving", 0);
+  const Room whole{Vec3::Zero(), profile.build()};
+  if (const auto broken = broken_promise(arrangement, profile.pack.gap_mm, whole, progress))
+    throw Error(Fault::kInternal, broken->what,
+                "Nothing was written. Try another --seed or --variant, and report this model.");
 }
 
 Variant decide(Variant wanted, const Plan& plan) {
@@ -105,6 +115,7 @@ Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
   const Variant chosen = decide(variant, planned);
   Arrangement arrangement = take(planned, chosen);
   const std::vector<Tray> trays = trays_of(arrangement);
+  timed(planned.job.timings_s, "prove", [&] { prove(arrangement, profile, progress); });
 
   Job job = std::move(planned.job);
   job.variant = name_of(chosen);

@@ -72,7 +72,8 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     sizes.push_back(boxes.back().sizes().head<2>());
   }
   const Room room = room_for(boxes, profile);
-  const std::vector<Slot> slots = side_by_side(sizes, room.size_mm.head<2>(), profile.pack.gap_mm);
+  const std::vector<Slot> slots =
+      side_by_side(sizes, room.size_mm.head<2>(), std::max(profile.pack.gap_mm, kLeastGap_mm));
   Arrangement arrangement;
   for (std::size_t m = 0; m < models.size(); ++m) {
     JobPart part;
