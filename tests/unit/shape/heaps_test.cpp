@@ -4,6 +4,7 @@
 #include <random>
 #include <string>
 
+#include "base/error.h"
 #include "fixtures/models.h"
 #include "shape/repair.h"
 #include "shape/resample.h"
@@ -79,12 +80,20 @@ unsigned heaps() {
 }
 
 TEST(Heaps, AreUnitedWhateverCrossesOrTouches) {
+  unsigned refused = 0;
   for (unsigned number = 0; number < heaps(); ++number) {
     SCOPED_TRACE(number);
     Warnings warnings;
     const Mesh model = repair(heap(number), warnings, Progress());
     if (!self_intersects(model)) continue;
-    const Resampled resampled = resample(model, kTolerance_mm, Progress());
+    Resampled resampled;
+    try {
+      resampled = resample(model, kTolerance_mm, Progress());
+    } catch (const Error& error) {  // a refusal is an answer, a rare one
+      EXPECT_EQ(error.fault(), Fault::kBadInput);
+      ++refused;
+      continue;
+    }
     EXPECT_TRUE(is_closed_manifold(to_soup(resampled.surface)));
     EXPECT_FALSE(self_intersects(resampled.surface));
     EXPECT_LE(resampled.deviation_mm, kTolerance_mm);
@@ -92,6 +101,7 @@ TEST(Heaps, AreUnitedWhateverCrossesOrTouches) {
       EXPECT_NEAR(volume_mm3(resampled.surface), lattice_volume_mm3(model), 2);
     }
   }
+  EXPECT_LE(refused, heaps() / 50);
 }
 
 }  // namespace
