@@ -47,7 +47,7 @@ std::vector<std::string> ZipArchive::names() const {
   return names;
 }
 
-std::optional<std::string> ZipArchive::entry(const std::string& name) const {
+std::optional<std::string> ZipArchive::entry(const std::string& name) {
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
       zip_fopen(zip_of(zip_.get()), name.c_str(), ZIP_FL_NOCASE), zip_fclose);
   if (!file) return std::nullopt;
@@ -56,12 +56,14 @@ std::optional<std::string> ZipArchive::entry(const std::string& name) const {
   for (;;) {
     const zip_int64_t count = zip_fread(file.get(), block.data(), block.size());
     if (count < 0) refuse("an entry of its ZIP archive is broken");
-    if (count == 0) return content;
+    if (count == 0) break;
     content.append(block.data(), static_cast<std::size_t>(count));
     if (content.size() > most_bytes_)
       throw Error(Fault::kBadInput, "The ZIP archive unpacks to an implausible size",
                   "Export it again, or export what is in it by itself.");
   }
+  most_bytes_ -= content.size();
+  return content;
 }
 
 }  // namespace packmerger

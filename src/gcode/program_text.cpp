@@ -84,7 +84,7 @@ std::vector<std::string> plates_of(const ZipArchive& archive) {
 }
 
 std::string program_of_archive(std::string_view bytes) {
-  const ZipArchive archive(bytes, kMostInflated);
+  ZipArchive archive(bytes, kMostInflated);
   const std::vector<std::string> plates = plates_of(archive);
   if (plates.empty())
     refuse("a ZIP archive without a sliced plate (Metadata/plate_1.gcode)",

@@ -65,6 +65,9 @@ LoadedModel load_model(const std::filesystem::path& path, const Sizing& sizing, 
   for (Vec3& point : file.soup.points) point *= loaded.input.scale;
   progress.report("repairing", 0);
   loaded.surface = std::make_shared<const Mesh>(repair(file.soup, warnings, progress));
+  if (!file.left_out.empty())
+    warnings.push_back({"left_out", loaded.input.file + ": " + file.left_out +
+                                        " of the slicer's project left out, the rest is printed"});
   warn_of_size(loaded.input.file, *loaded.surface, warnings);
   return loaded;
 }

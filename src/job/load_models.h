@@ -25,7 +25,7 @@ struct LoadedModel {
   std::shared_ptr<const Mesh> surface;  // closed, outward, mm; shared by copies of one file
 };
 
-// One entry per path, in order; a path named twice is read once. Adds warnings "repaired" and
+// One entry per path, in order; a path named twice is read once. Adds warnings "repaired", "left_out" and
 // "suspicious_size" (longest side under 1 mm or over 2 m). Throws what read_model and repair throw.
 std::vector<LoadedModel> load_models(const std::vector<std::filesystem::path>& paths,
                                      const Sizing& sizing, Warnings& warnings,

@@ -19,7 +19,14 @@ TriangleSoup read_stl(std::string_view bytes, const Progress& progress);
 TriangleSoup read_obj(std::string_view bytes, const Progress& progress);
 TriangleSoup read_ply(std::string_view bytes, const Progress& progress);
 TriangleSoup read_off(std::string_view bytes, const Progress& progress);
-TriangleSoup read_3mf(std::string_view bytes, const Progress& progress);  // in mm
+
+struct Parts3mf {
+  TriangleSoup soup;  // mm
+  // Volumes of a slicer's project that hold no matter, and are left out.
+  int modifiers = 0;
+  int support_helpers = 0;
+};
+Parts3mf read_3mf(std::string_view bytes, const Progress& progress);
 
 // Whether the length is that of a binary STL with the count it declares.
 bool has_binary_stl_length(std::string_view bytes);

@@ -1,78 +1,44 @@
-// Core 3MF: a ZIP archive with an XML model part (3MF Core Specification 1.3). Only that part and
-// the relationships are read, into memory: no name in the archive is ever used as a path on disk.
+// Core 3MF: a ZIP archive with an XML model part (3MF Core Specification 1.3), those that it refers
+// to (production extension), and what slicers' projects say about them.
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
+#include <memory>
 #include <set>
 #include <string>
-
-#include <pugixml.hpp>
+#include <utility>
 
 #include "base/error.h"
-#include "base/zip_archive.h"
+#include "shape/archive_3mf.h"
 #include "shape/formats.h"
+#include "shape/volume_roles.h"
 
 namespace packmerger {
 namespace {
 
-constexpr std::uint64_t kMaxInflated = std::uint64_t{512} << 20;
-constexpr double kMaxTreeBytes = 2e9;  // of the XML as a tree in memory
-constexpr double kNodeBytes = 72;      // of a node in pugixml's tree, with its share of a page
-constexpr double kAttributeBytes = 40;
 constexpr int kMaxDepth = 64;
 constexpr int kMaxVisits = 1'000'000;  // components may double at every level
 
 constexpr std::string_view kModelRelationship =
     "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-// Extensions that may be required without changing the shapes: production (without p:path) and
-// materials.
+// Extensions that may be required without changing the shapes: production and materials.
 constexpr std::array<std::string_view, 2> kHarmlessExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"};
 
-std::string_view local(const char* name) {
-  const std::string_view whole = name;
-  const std::size_t colon = whole.find(':');
-  return colon == whole.npos ? whole : whole.substr(colon + 1);
-}
-
-pugi::xml_node child(const pugi::xml_node& node, std::string_view name) {
-  for (const pugi::xml_node& each : node.children())
-    if (local(each.name()) == name) return each;
-  return {};
-}
-
-// The tree can be twenty times as large as its text.
-void check_tree_size(std::string_view text) {
-  const auto count = [&](char c) {
-    return static_cast<double>(std::count(text.begin(), text.end(), c));
-  };
-  if (kNodeBytes * count('<') + kAttributeBytes * count('=') > kMaxTreeBytes)
-    throw Error(Fault::kBadInput, "The 3MF file holds more elements than a model can need",
-                "Reduce the model, or export it as binary STL.");
-}
-
-pugi::xml_document parsed(std::string& text) {
-  check_tree_size(text);
-  pugi::xml_document document;
-  if (!document.load_buffer_inplace(text.data(), text.size()))
-    refuse_file("its XML is not well-formed");
-  return document;
-}
-
 // The name of the root model part.
-std::string model_part(const ZipArchive& archive) {
-  if (auto text = archive.entry("_rels/.rels")) {
-    const pugi::xml_document document = parsed(*text);
-    for (const pugi::xml_node& relationship : child(document, "Relationships").children())
-      if (relationship.attribute("Type").value() == kModelRelationship) {
-        std::string target = relationship.attribute("Target").value();
-        target.erase(0, target.find_first_not_of('/'));
-        return target;
-      }
-  }
+std::string model_part(Archive3mf& archive) {
+  if (const auto relations = archive.part("_rels/.rels"))
+    for (const pugi::xml_node& relationship :
+         child_named(relations->tree, "Relationships").children())
+      if (relationship.attribute("Type").value() == kModelRelationship)
+        return relationship.attribute("Target").value();
   return "3D/3dmodel.model";
+}
+
+std::string without_slash(std::string name) {
+  name.erase(0, name.find_first_not_of('/'));
+  return name;
 }
 
 double unit_mm(const std::string& unit) {
@@ -84,7 +50,8 @@ double unit_mm(const std::string& unit) {
   return found->second;
 }
 
-// p' = linear · p + offset; the file gives the rows of the transposed matrix, then the offset.
+// p' = linear · p + offset, in mm; the file gives the rows of the transposed matrix, then the
+// offset.
 struct Transform {
   Mat3 linear = Mat3::Identity();
   Vec3 offset = Vec3::Zero();
@@ -94,7 +61,8 @@ struct Transform {
   }
 };
 
-Transform transform_of(const pugi::xml_node& node) {
+// unit: of the model part that the node stands in; the offset becomes millimetres.
+Transform transform_of(const pugi::xml_node& node, double unit) {
   std::string_view text = node.attribute("transform").value();
   Transform transform;
   if (text.empty()) return transform;
@@ -107,7 +75,7 @@ Transform transform_of(const pugi::xml_node& node) {
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       transform.linear(column, row) = numbers[3 * row + column];
-  transform.offset = {numbers[9], numbers[10], numbers[11]};
+  transform.offset = unit * Vec3(numbers[9], numbers[10], numbers[11]);
   if (!(std::abs(transform.linear.determinant()) > 0))
     refuse_file("a transform flattens its object");
   return transform;
@@ -118,93 +86,6 @@ std::int64_t index_of(const pugi::xml_node& node, const char* name) {
   if (!index || *index < 0) refuse_file("a triangle's corner is not a number");
   return *index;
 }
-
-void refuse_other_parts(const pugi::xml_node& node) {
-  for (const pugi::xml_attribute& attribute : node.attributes())
-    if (local(attribute.name()) == "path")
-      throw Error(Fault::kBadInput, "The 3MF file keeps its objects in several parts (p:path)",
-                  "Export it without the production extension, or as STL.");
-}
-
-class ModelReader {
- public:
-  ModelReader(const pugi::xml_node& model, const Progress& progress)
-      : unit_(unit_mm(model.attribute("unit").value())), progress_(progress) {
-    for (const pugi::xml_node& object : child(model, "resources").children()) {
-      if (local(object.name()) != "object") continue;
-      if (!objects_.emplace(object.attribute("id").value(), object).second)
-        refuse_file("two of its objects have the same id");
-    }
-  }
-
-  TriangleSoup read(const pugi::xml_node& build) {
-    for (const pugi::xml_node& item : build.children()) {
-      if (local(item.name()) != "item" || is_not_printed(item)) continue;
-      add_object(item, transform_of(item), 0);
-    }
-    return soup_.finish();
-  }
-
- private:
-  static bool is_not_printed(const pugi::xml_node& item) {
-    const std::string_view printable = item.attribute("printable").value();
-    return printable == "0" || printable == "false";
-  }
-
-  // referrer: an item or a component.
-  void add_object(const pugi::xml_node& referrer, const Transform& transform, int depth) {
-    progress_.check();
-    refuse_other_parts(referrer);
-    if (depth > kMaxDepth || ++visits_ > kMaxVisits) refuse_file("its components nest without end");
-    const std::string id = referrer.attribute("objectid").value();
-    const auto object = objects_.find(id);
-    if (object == objects_.end()) refuse_file("it refers to an object that is not there");
-    const std::string_view type = object->second.attribute("type").value();
-    if (type == "support" || type == "solidsupport" || type == "other") return;
-    if (!open_.insert(id).second) refuse_file("one of its objects contains itself");
-    if (const pugi::xml_node mesh = child(object->second, "mesh")) add_mesh(mesh, transform);
-    for (const pugi::xml_node& component : child(object->second, "components").children())
-      if (local(component.name()) == "component")
-        add_object(component, transform * transform_of(component), depth + 1);
-    open_.erase(id);
-  }
-
-  void add_mesh(const pugi::xml_node& mesh, const Transform& transform) {
-    const std::int64_t base = soup_.point_count();
-    for (const pugi::xml_node& vertex : child(mesh, "vertices").children()) {
-      if (local(vertex.name()) != "vertex") continue;
-      Vec3 point;
-      int axis = 0;
-      for (const char* name : {"x", "y", "z"}) {
-        const auto number = to_double(vertex.attribute(name).value());
-        if (!number) refuse_file("a vertex lacks a coordinate");
-        point[axis++] = *number;
-      }
-      // The unit holds for vertices and for translations, so it comes last.
-      soup_.add_point(unit_ * (transform.linear * point + transform.offset));
-    }
-    const std::int64_t count = soup_.point_count() - base;
-    const bool mirrored = transform.linear.determinant() < 0;
-    for (const pugi::xml_node& triangle : child(mesh, "triangles").children()) {
-      if (local(triangle.name()) != "triangle") continue;
-      std::array<std::int64_t, 3> corners{index_of(triangle, "v1"), index_of(triangle, "v2"),
-                                          index_of(triangle, "v3")};
-      for (std::int64_t& corner : corners) {
-        if (corner >= count) refuse_file("a triangle names a vertex that is not there");
-        corner += base;
-      }
-      if (mirrored) std::swap(corners[1], corners[2]);
-      soup_.add_polygon(corners);
-    }
-  }
-
-  double unit_;
-  const Progress& progress_;
-  std::map<std::string, pugi::xml_node> objects_;
-  std::set<std::string> open_;  // objects that are being added, to find cycles
-  int visits_ = 0;
-  SoupBuilder soup_;
-};
 
 void refuse_required_extensions(const pugi::xml_node& model) {
   std::string_view prefixes = model.attribute("requiredextensions").value();
@@ -219,18 +100,158 @@ void refuse_required_extensions(const pugi::xml_node& model) {
   }
 }
 
+[[noreturn]] void refuse_negative_volume(const std::string& object) {
+  throw Error(Fault::kBadInput,
+              "The 3MF project takes a negative volume away from object " + object +
+                  ", which is not supported",
+              "Export the model from the slicer as STL, or subtract the volume in the program it "
+              "was drawn with.");
+}
+
+// The p:path of an item or a component; empty: the part that it stands in.
+std::string path_of(const pugi::xml_node& referrer) {
+  for (const pugi::xml_attribute& attribute : referrer.attributes())
+    if (local_name(attribute.name()) == "path") return without_slash(attribute.value());
+  return "";
+}
+
+// A model part of the archive.
+struct ModelPart {
+  std::unique_ptr<XmlPart> xml;
+  double unit = 1;
+  std::map<std::string, pugi::xml_node> objects;
+};
+
+class ModelReader {
+ public:
+  ModelReader(Archive3mf& archive, const Progress& progress)
+      : archive_(archive), progress_(progress), root_(without_slash(model_part(archive))) {}
+
+  Parts3mf read() {
+    const ModelPart& root = part(root_);
+    roles_ = read_volume_roles(archive_);
+    progress_.check();
+    const pugi::xml_node model = child_named(root.xml->tree, "model");
+    for (const pugi::xml_node& item : child_named(model, "build").children()) {
+      if (local_name(item.name()) != "item" || is_not_printed(item)) continue;
+      const std::string path = path_of(item);
+      add_object(item, path.empty() ? root_ : path, transform_of(item, root.unit), 0);
+    }
+    return {soup_.finish(), modifiers_, support_helpers_};
+  }
+
+ private:
+  static bool is_not_printed(const pugi::xml_node& item) {
+    const std::string_view printable = item.attribute("printable").value();
+    return printable == "0" || printable == "false";
+  }
+
+  const ModelPart& part(const std::string& path) {
+    const auto known = parts_.find(path);
+    if (known != parts_.end()) return known->second;
+    ModelPart part;
+    part.xml = archive_.part(path);
+    if (!part.xml) refuse_file("its ZIP archive holds no 3D model part");
+    progress_.check();
+    const pugi::xml_node model = child_named(part.xml->tree, "model");
+    if (!model) refuse_file("its 3D model part holds no model");
+    refuse_required_extensions(model);
+    part.unit = unit_mm(model.attribute("unit").value());
+    for (const pugi::xml_node& object : child_named(model, "resources").children()) {
+      if (local_name(object.name()) != "object") continue;
+      if (!part.objects.emplace(object.attribute("id").value(), object).second)
+        refuse_file("two of its objects have the same id");
+    }
+    return parts_.emplace(path, std::move(part)).first->second;
+  }
+
+  // referrer: an item or a component; path: the model part that its object stands in.
+  void add_object(const pugi::xml_node& referrer, const std::string& path,
+                  const Transform& transform, int depth) {
+    progress_.check();
+    if (depth > kMaxDepth || ++visits_ > kMaxVisits) refuse_file("its components nest without end");
+    const ModelPart& here = part(path);
+    const std::string id = referrer.attribute("objectid").value();
+    const auto object = here.objects.find(id);
+    if (object == here.objects.end()) refuse_file("it refers to an object that is not there");
+    const std::string_view type = object->second.attribute("type").value();
+    if (type == "support" || type == "solidsupport" || type == "other") return;
+    if (!open_.insert({path, id}).second) refuse_file("one of its objects contains itself");
+    static const ObjectRoles kNoRoles;
+    const auto told = path == root_ ? roles_.find(id) : roles_.end();
+    const ObjectRoles& roles = told == roles_.end() ? kNoRoles : told->second;
+    if (const pugi::xml_node mesh = child_named(object->second, "mesh"))
+      add_mesh(mesh, here.unit, transform, roles, id);
+    for (const pugi::xml_node& component : child_named(object->second, "components").children()) {
+      if (local_name(component.name()) != "component") continue;
+      const auto role = roles.components.find(component.attribute("objectid").value());
+      if (role != roles.components.end() && !is_matter(role->second, id)) {
+        ++(role->second == VolumeRole::kModifier ? modifiers_ : support_helpers_);
+        continue;
+      }
+      const std::string other = path_of(component);
+      add_object(component, other.empty() ? path : other,
+                 transform * transform_of(component, here.unit), depth + 1);
+    }
+    open_.erase({path, id});
+  }
+
+  static bool is_matter(VolumeRole role, const std::string& object) {
+    if (role == VolumeRole::kNegative) refuse_negative_volume(object);
+    return role == VolumeRole::kPart;
+  }
+
+  void add_mesh(const pugi::xml_node& mesh, double unit, const Transform& transform,
+                const ObjectRoles& roles, const std::string& id) {
+    const std::int64_t base = soup_.point_count();
+    for (const pugi::xml_node& vertex : child_named(mesh, "vertices").children()) {
+      if (local_name(vertex.name()) != "vertex") continue;
+      Vec3 point;
+      int axis = 0;
+      for (const char* name : {"x", "y", "z"}) {
+        const auto number = to_double(vertex.attribute(name).value());
+        if (!number) refuse_file("a vertex lacks a coordinate");
+        point[axis++] = *number;
+      }
+      soup_.add_point(transform.linear * (unit * point) + transform.offset);
+    }
+    for (const ObjectRoles::Range& range : roles.ranges)
+      if (!is_matter(range.role, id))
+        ++(range.role == VolumeRole::kModifier ? modifiers_ : support_helpers_);
+    const std::int64_t count = soup_.point_count() - base;
+    const bool mirrored = transform.linear.determinant() < 0;
+    std::int64_t number = 0;
+    for (const pugi::xml_node& triangle : child_named(mesh, "triangles").children()) {
+      if (local_name(triangle.name()) != "triangle") continue;
+      std::array<std::int64_t, 3> corners{index_of(triangle, "v1"), index_of(triangle, "v2"),
+                                          index_of(triangle, "v3")};
+      for (std::int64_t& corner : corners) {
+        if (corner >= count) refuse_file("a triangle names a vertex that is not there");
+        corner += base;
+      }
+      if (roles.of_triangle(number++) != VolumeRole::kPart) continue;
+      if (mirrored) std::swap(corners[1], corners[2]);
+      soup_.add_polygon(corners);
+    }
+  }
+
+  Archive3mf& archive_;
+  const Progress& progress_;
+  std::string root_;
+  std::map<std::string, ModelPart> parts_;  // that were needed so far
+  std::map<std::string, ObjectRoles> roles_;
+  std::set<std::pair<std::string, std::string>> open_;  // being added, to find cycles
+  int visits_ = 0;
+  int modifiers_ = 0;
+  int support_helpers_ = 0;
+  SoupBuilder soup_;
+};
+
 }  // namespace
 
-TriangleSoup read_3mf(std::string_view bytes, const Progress& progress) {
-  const ZipArchive archive(bytes, kMaxInflated);
-  auto text = archive.entry(model_part(archive));
-  if (!text) refuse_file("its ZIP archive holds no 3D model part");
-  progress.check();
-  const pugi::xml_document document = parsed(*text);
-  const pugi::xml_node model = child(document, "model");
-  if (!model) refuse_file("its 3D model part holds no model");
-  refuse_required_extensions(model);
-  return ModelReader(model, progress).read(child(model, "build"));
+Parts3mf read_3mf(std::string_view bytes, const Progress& progress) {
+  Archive3mf archive(bytes);
+  return ModelReader(archive, progress).read();
 }
 
 }  // namespace packmerger

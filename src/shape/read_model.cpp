@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "shape/formats.h"
@@ -34,6 +35,19 @@ std::string format_of(std::string_view bytes, const std::string& extension) {
   for (const char* known : {"stl", "obj", "ply", "off", "3mf"})
     if (extension == known) return known;
   return "";
+}
+
+std::string counted(int count, const char* thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+std::string told(const Parts3mf& parts) {
+  std::string text;
+  if (parts.modifiers > 0) text = counted(parts.modifiers, "modifier");
+  if (parts.support_helpers > 0)
+    text += (text.empty() ? "" : " and ") +
+            counted(parts.support_helpers, "support blocker or enforcer");
+  return text;
 }
 
 void check(const TriangleSoup& soup) {
@@ -71,7 +85,11 @@ ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
   if (file.format == "obj") file.soup = read_obj(bytes, progress);
   if (file.format == "ply") file.soup = read_ply(bytes, progress);
   if (file.format == "off") file.soup = read_off(bytes, progress);
-  if (file.format == "3mf") file.soup = read_3mf(bytes, progress);
+  if (file.format == "3mf") {
+    Parts3mf parts = read_3mf(bytes, progress);
+    file.soup = std::move(parts.soup);
+    file.left_out = told(parts);
+  }
   if (file.format.empty())
     throw Error(Fault::kBadInput, "The model file's format is not known",
                 "Give an STL, OBJ, PLY, OFF or 3MF file.");

@@ -15,6 +15,7 @@ struct ModelFile {
   TriangleSoup soup;      // the file's unit; mm where has_unit
   bool has_unit = false;  // 3MF declares its unit and was converted; the other formats have none
   std::string format;     // "stl", "obj", "ply", "off" or "3mf"
+  std::string left_out;   // "2 modifiers": what a slicer's project holds besides matter; or empty
 };
 
 // The content decides the format where it can (a ZIP holding a 3D model part is 3MF; "ply" and
@@ -25,12 +26,13 @@ struct ModelFile {
 // concave). Every triangle that is returned has
 // indices within points and every coordinate is finite; nothing else is promised: see repair().
 // 3MF: items, components and their transforms are applied, in mm; objects of type "support" and
-// "other" and items that are not to be printed are left out; models that refer to other parts of
-// the archive (the production extension's p:path) are refused.
+// "other" and items that are not to be printed are left out. So are the modifiers, support blockers
+// and support enforcers of PrusaSlicer's, Bambu Studio's and OrcaSlicer's projects; a project with
+// a negative volume is refused.
 //
 // Nothing in the file is trusted: counts are checked against the bytes that are there before
-// memory is taken. Limits: 1 GiB a file; 512 MiB, and 200 times the archive's size, a 3MF's
-// inflated model part; 30 million triangles after polygons are cut and components are repeated; 64
+// memory is taken. Limits: 1 GiB a file; 512 MiB, and 200 times the archive's size, what is read of
+// a 3MF once inflated; 30 million triangles after polygons are cut and components are repeated; 64
 // levels of components; coordinates up to 1e9. Memory stays below 64 times the file's size (for
 // 3MF, of the inflated part) plus the returned soup.
 //

@@ -116,12 +116,87 @@ TEST(Read3mf, RefusesBadTransformsAndUnits) {
 }
 
 TEST(Read3mf, SaysWhichExtensionItDoesNotSupport) {
-  EXPECT_THAT(refusal(three_mf("", cube_object("id=\"1\""),
-                               "<item objectid=\"1\" p:path=\"/3D/other.model\"/>")),
-              HasSubstr("p:path"));
   EXPECT_THAT(refusal(three_mf("requiredextensions=\"b\" xmlns:b=\"urn:beams\"",
                                cube_object("id=\"1\""), "<item objectid=\"1\"/>")),
               HasSubstr("urn:beams"));
+}
+
+// Two unit cubes in one mesh, 5 mm apart, and the settings beside them.
+std::string project(const std::string& settings, const std::string& second) {
+  TriangleSoup both = fixtures::cube(1);
+  TriangleSoup other = fixtures::cube(1);
+  for (Vec3& point : other.points) point.x() += 5;
+  append(both, other);
+  const std::string model = "<model><resources><object id=\"3\">" + mesh_xml(both) +
+                            "</object></resources><build><item objectid=\"3\"/></build></model>";
+  return written::zipped({{"3D/3dmodel.model", model},
+                          {settings,
+                           "<config><object id=\"3\"><volume firstid=\"0\" lastid=\"11\"/>"
+                           "<volume firstid=\"12\" lastid=\"23\">" +
+                               second + "</volume></object></config>"}});
+}
+
+std::string volume_type(const std::string& type) {
+  return "<metadata type=\"volume\" key=\"volume_type\" value=\"" + type + "\"/>";
+}
+
+constexpr const char* kPrusa = "Metadata/Slic3r_PE_model.config";
+
+TEST(Read3mf, LeavesOutTheHelpersOfAPrusaSlicerProject) {
+  for (const std::string& type :
+       {volume_type("ParameterModifier"), volume_type("SupportBlocker"),
+        volume_type("SupportEnforcer"), std::string("<metadata key=\"modifier\" value=\"1\"/>")}) {
+    const ModelFile file = read_model_bytes(project(kPrusa, type), "", Progress());
+    EXPECT_EQ(file.soup.triangles.size(), 12u) << type;
+    EXPECT_THAT(file.left_out, HasSubstr("1 ")) << type;
+  }
+  const ModelFile file =
+      read_model_bytes(project(kPrusa, volume_type("ModelPart")), "", Progress());
+  EXPECT_EQ(file.soup.triangles.size(), 24u);
+  EXPECT_EQ(file.left_out, "");
+}
+
+TEST(Read3mf, NeverPrintsANegativeVolume) {
+  EXPECT_THAT(refusal(project(kPrusa, volume_type("NegativeVolume"))),
+              HasSubstr("negative volume"));
+  EXPECT_THAT(refusal(project(kPrusa, volume_type("Wormhole"))), HasSubstr("Wormhole"));
+}
+
+// An object of two components, which stand in a part of their own.
+std::string bambu_project(const std::string& subtype) {
+  const std::string production =
+      " requiredextensions=\"p\" "
+      "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"";
+  const std::string component = "\" p:path=\"/3D/Objects/object_1.model\"/>";
+  return written::zipped(
+      {{"3D/3dmodel.model",
+        "<model" + production + "><resources><object id=\"8\"><components><component objectid=\"1" +
+            component + "<component transform=\"1 0 0 0 1 0 0 0 1 5 0 0\" objectid=\"2" +
+            component +
+            "</components></object></resources><build><item objectid=\"8\"/></build></model>"},
+       {"3D/Objects/object_1.model", "<model unit=\"millimeter\"><resources>" +
+                                         cube_object("id=\"1\"") + cube_object("id=\"2\"") +
+                                         "</resources></model>"},
+       {"Metadata/model_settings.config",
+        "<config><object id=\"8\"><part id=\"1\" subtype=\"normal_part\"/><part id=\"2\" "
+        "subtype=\"" +
+            subtype + "\"/></object></config>"}});
+}
+
+TEST(Read3mf, ReadsBambuProjects) {
+  EXPECT_NEAR(bounding_box(read(bambu_project("normal_part"))).max().x(), 6, 1e-12);
+  for (const char* helper : {"modifier_part", "support_blocker", "support_enforcer"}) {
+    const ModelFile file = read_model_bytes(bambu_project(helper), "", Progress());
+    EXPECT_EQ(file.soup.triangles.size(), 12u) << helper;
+    EXPECT_NE(file.left_out, "") << helper;
+  }
+  EXPECT_THAT(refusal(bambu_project("negative_part")), HasSubstr("negative volume"));
+}
+
+TEST(Read3mf, PartsThatAreMissingAreRefused) {
+  EXPECT_THAT(refusal(three_mf("", cube_object("id=\"1\""),
+                               "<item objectid=\"1\" p:path=\"/3D/other.model\"/>")),
+              HasSubstr("no 3D model part"));
 }
 
 TEST(Read3mf, StopsInflatingABomb) {
