@@ -96,9 +96,10 @@ PreparedJob read_prepared(const fs::path& folder) {
     job.seed = report.value("seed", std::int64_t{0});
     const bool is_model = job.variant != kProgramVariant;
     for (const json& warning : report.value("warnings", json::array())) {
-      const json& code = warning.at("code");
+      const std::string code = warning.at("code").get<std::string>();
+      const bool matters = code == "suspicious_size" || code == "shape_changed";
       // what a Replicator has nothing like harms nobody
-      const bool asks = is_model ? code == "suspicious_size" : code != "left_out";
+      const bool asks = is_model ? matters : code != "left_out";
       if (asks && job.warning.empty()) job.warning = warning.at("text").get<std::string>();
     }
     if (const json* estimate = estimate_of(report.at("estimates"), job.variant)) {

@@ -12,10 +12,10 @@ struct Orientation {
 };
 
 // Turns each edge-connected piece out of the matter. The file's own turning tells what a piece
-// within another one is: turned against the piece around it, it is the wall of a cavity; turned like
-// it, it lies within matter, adds none, and is removed, as slicers do by the winding number. Whether
-// the outermost piece is turned outwards or inwards does not count. Flat sheets go.
-// soup: closed; each piece's triangles are turned alike.
+// within another one is: turned against the piece around it, it is the wall of a cavity; turned
+// like it, it lies within matter, adds none, and is removed, as slicers do by the winding number.
+// Whether the outermost piece is turned outwards or inwards does not count. Flat sheets go. soup:
+// closed; each piece's triangles are turned alike.
 Orientation orient_outwards(TriangleSoup& soup);
 
 }  // namespace packmerger

@@ -1,10 +1,9 @@
 #include "shape/repair.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,8 +20,9 @@
 #include <CGAL/Surface_mesh.h>
 
 #include "base/error.h"
+#include "shape/orient.h"
 #include "shape/soup.h"
-#include "shape/surface_query.h"
+#include "shape/t_junctions.h"
 
 namespace packmerger {
 namespace {
@@ -33,8 +33,10 @@ using CgalMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 // Pieces with a border that hold less of the area than this are debris, not part of the model.
 constexpr double kShardArea = 1e-3;
-// A closed piece whose volume is below this fraction of its box's diagonal cubed is a flat sheet.
-constexpr double kFlatVolume = 1e-9;
+// What changes more than this of the area or the volume is told apart.
+constexpr double kChanged = 0.01;
+// A hole that reaches over this much of the model in two directions leaves a skin, not a body.
+constexpr double kWholeWidth = 0.9;
 // Points nearer than this fraction of the diagonal are welded when equal points alone leave holes:
 // about what single-precision files lose.
 constexpr double kWeldTolerance = 1e-6;
@@ -47,10 +49,12 @@ struct Counts {
   int facets_reversed = 0;
   int holes_filled = 0;
   int facets_added = 0;
+  int swallowed = 0;
+  bool is_skin = false;
 
   bool any() const {
     return open_edges + degenerate_facets + edges_fixed + facets_removed + facets_reversed +
-               holes_filled + facets_added >
+               holes_filled + facets_added + swallowed >
            0;
   }
 };
@@ -89,9 +93,36 @@ TriangleSoup from_cgal(const CgalMesh& mesh) {
   return soup;
 }
 
+// Of two ways to turn a piece alike, the one in which most of its triangles were: it may tell a
+// cavity from a body within a body.
+void turn_as_most_were(const std::vector<Kernel::Point_3>& points,
+                       std::vector<std::vector<std::size_t>>& polygons,
+                       const TriangleSoup& before) {
+  TriangleSoup now;
+  for (const Kernel::Point_3& p : points) now.points.emplace_back(p.x(), p.y(), p.z());
+  for (const auto& polygon : polygons)
+    now.triangles.push_back(
+        {static_cast<int>(polygon[0]), static_cast<int>(polygon[1]), static_cast<int>(polygon[2])});
+  const Components pieces = components_of(now);
+  std::vector<int> votes(static_cast<std::size_t>(pieces.count), 0);
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    // Points may have been doubled, so the corners' places are compared.
+    const auto& was = before.triangles[i];
+    const auto& is = now.triangles[i];
+    const auto first = std::find_if(is.begin(), is.end(), [&](int corner) {
+      return now.points[corner] == before.points[was[0]];
+    });
+    if (first == is.end()) continue;
+    const int next = is[static_cast<std::size_t>((first - is.begin() + 1) % 3)];
+    votes[pieces.of_triangle[i]] += now.points[next] == before.points[was[1]] ? 1 : -1;
+  }
+  for (std::size_t i = 0; i < polygons.size(); ++i)
+    if (votes[pieces.of_triangle[i]] < 0) std::swap(polygons[i][1], polygons[i][2]);
+}
+
 // Neighbouring triangles turned alike; where more than two meet at an edge the sheets are cut
 // apart.
-CgalMesh oriented(const TriangleSoup& soup, Counts& counts) {
+CgalMesh oriented(const TriangleSoup& soup) {
   std::vector<Kernel::Point_3> points;
   for (const Vec3& p : soup.points) points.emplace_back(p.x(), p.y(), p.z());
   std::vector<std::vector<std::size_t>> polygons;
@@ -100,37 +131,34 @@ CgalMesh oriented(const TriangleSoup& soup, Counts& counts) {
         {static_cast<std::size_t>(a), static_cast<std::size_t>(b), static_cast<std::size_t>(c)});
   pmp::orient_polygon_soup(points, polygons);
 
-  int reversed = 0;
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    // Vertices may have been doubled, so the corners' places are compared.
-    const auto& before = soup.triangles[i];
-    const auto place = [&](std::size_t corner) {
-      return Vec3(points[corner].x(), points[corner].y(), points[corner].z());
-    };
-    const auto first =
-        std::find_if(polygons[i].begin(), polygons[i].end(),
-                     [&](std::size_t corner) { return place(corner) == soup.points[before[0]]; });
-    if (first == polygons[i].end()) continue;
-    const std::size_t next =
-        polygons[i][static_cast<std::size_t>((first - polygons[i].begin() + 1) % 3)];
-    if (place(next) != soup.points[before[1]]) ++reversed;
-  }
-  // Which of the two ways is turned is arbitrary until the outside is known.
-  counts.facets_reversed += std::min(reversed, static_cast<int>(polygons.size()) - reversed);
+  turn_as_most_were(points, polygons, soup);
   CgalMesh mesh;
   pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh);
   return mesh;
 }
 
-void fill_holes(CgalMesh& mesh, Counts& counts, const Progress& progress) {
+// Whether the border runs around the whole model.
+bool spans(const CgalMesh& mesh, CgalMesh::Halfedge_index border, const Vec3& size) {
+  Box3 box;
+  for (const auto vertex : CGAL::vertices_around_face(border, mesh)) {
+    const Kernel::Point_3& p = mesh.point(vertex);
+    box.extend(Vec3(p.x(), p.y(), p.z()));
+  }
+  const Vec3 part = box.sizes().cwiseQuotient(size);
+  return (part.array() >= kWholeWidth).count() >= 2;
+}
+
+void fill_holes(CgalMesh& mesh, const Vec3& size, Counts& counts, const Progress& progress) {
   std::vector<CgalMesh::Halfedge_index> borders;
   pmp::extract_boundary_cycles(mesh, std::back_inserter(borders));
   for (const auto border : borders) {
     progress.check();
+    const bool is_skin = spans(mesh, border, size);
     std::vector<CgalMesh::Face_index> patch;
     pmp::triangulate_hole(mesh, border, std::back_inserter(patch));
     if (patch.empty()) continue;
     ++counts.holes_filled;
+    counts.is_skin = counts.is_skin || is_skin;
     counts.facets_added += static_cast<int>(patch.size());
   }
 }
@@ -156,12 +184,15 @@ TriangleSoup without_open_shards(const TriangleSoup& soup, Counts& counts) {
   return kept;
 }
 
-TriangleSoup closed(TriangleSoup soup, Counts& counts, const Progress& progress) {
+// soup becomes what the file's triangles were before they were turned and filled up.
+TriangleSoup closed(TriangleSoup& soup, Counts& counts, const Progress& progress) {
   const double diagonal = bounding_box(soup).diagonal().norm();
   counts.open_edges = count_open_edges(soup);
   if (counts.open_edges > 0) {
     soup = welded(soup, kWeldTolerance * diagonal);
     counts.degenerate_facets += drop_collapsed(soup);
+    counts.facets_removed += drop_duplicates(soup);
+    divide_at_t_junctions(soup, kWeldTolerance * diagonal, progress);
     counts.facets_removed += drop_duplicates(soup);
     counts.edges_fixed += std::max(0, counts.open_edges - count_open_edges(soup));
     soup = welded(without_open_shards(soup, counts), 0);
@@ -169,72 +200,17 @@ TriangleSoup closed(TriangleSoup soup, Counts& counts, const Progress& progress)
   if (soup.triangles.empty()) refuse("nothing but loose triangles");
   progress.check();
   try {
-    CgalMesh mesh = oriented(soup, counts);
+    CgalMesh mesh = oriented(soup);
     const int before = border_edges(mesh);
     pmp::stitch_borders(mesh);
     counts.edges_fixed += (before - border_edges(mesh)) / 2;
-    fill_holes(mesh, counts, progress);
+    fill_holes(mesh, bounding_box(soup).sizes(), counts, progress);
     pmp::remove_degenerate_faces(mesh);
     pmp::duplicate_non_manifold_vertices(mesh);
     return from_cgal(mesh);
   } catch (const CGAL::Failure_exception& failure) {
     refuse("CGAL gave up (" + failure.message() + ")");
   }
-}
-
-bool inside(const TriangleSoup& inner, const SurfaceQuery& outer) {
-  return std::all_of(inner.points.begin(), inner.points.end(),
-                     [&](const Vec3& point) { return outer.winding_number(point) % 2 != 0; });
-}
-
-// How many other components hold each one entirely.
-std::vector<int> nesting_depths(const std::vector<TriangleSoup>& parts) {
-  std::vector<int> depths(parts.size(), 0);
-  std::vector<Box3> boxes;
-  for (const TriangleSoup& part : parts) boxes.push_back(bounding_box(part));
-  for (std::size_t outer = 0; outer < parts.size(); ++outer) {
-    std::unique_ptr<SurfaceQuery> query;
-    for (std::size_t inner = 0; inner < parts.size(); ++inner) {
-      if (inner == outer || !boxes[outer].contains(boxes[inner])) continue;
-      if (!query) query = std::make_unique<SurfaceQuery>(parts[outer]);
-      if (inside(parts[inner], *query)) ++depths[inner];
-    }
-  }
-  return depths;
-}
-
-// Each component out of the matter: one held by an odd number of others is a cavity. Flat sheets
-// go.
-int orient_outwards(TriangleSoup& soup, Counts& counts) {
-  const double diagonal = bounding_box(soup).diagonal().norm();
-  const Components components = components_of(soup);
-  const std::vector<TriangleSoup> parts = split_components(soup);
-  const std::vector<int> depths = nesting_depths(parts);
-  enum class Fate { kKeep, kTurn, kDrop };
-  std::vector<Fate> fates;
-  int kept = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double volume = signed_volume_mm3(parts[i]);
-    const bool is_flat = std::abs(volume) <= kFlatVolume * diagonal * diagonal * diagonal;
-    const bool is_cavity = depths[i] % 2 == 1;
-    fates.push_back(is_flat ? Fate::kDrop : (volume < 0) != is_cavity ? Fate::kTurn : Fate::kKeep);
-    kept += is_flat ? 0 : 1;
-    if (fates.back() == Fate::kTurn)
-      counts.facets_reversed += static_cast<int>(parts[i].triangles.size());
-  }
-  std::vector<std::array<int, 3>> triangles;
-  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
-    const Fate fate = fates[static_cast<std::size_t>(components.of_triangle[i])];
-    if (fate == Fate::kDrop) {
-      ++counts.facets_removed;
-      continue;
-    }
-    triangles.push_back(soup.triangles[i]);
-    if (fate == Fate::kTurn) std::swap(triangles.back()[1], triangles.back()[2]);
-  }
-  soup.triangles = std::move(triangles);
-  soup = without_unused_points(soup);
-  return kept;
 }
 
 std::string told(const Counts& counts, int number_of_parts) {
@@ -251,9 +227,41 @@ std::string told(const Counts& counts, int number_of_parts) {
   add(counts.facets_reversed, "facet", " turned round");
   add(counts.holes_filled, "hole", " filled");
   add(counts.facets_added, "facet", " added");
+  add(counts.swallowed, "piece", " within matter left out");
   const std::string pieces = std::to_string(number_of_parts) + " separate pieces";
   return "The model was repaired" + (text.empty() ? "" : ": " + text) +
          (number_of_parts > 1 ? "; it consists of " + pieces : "");
+}
+
+// Of figures that should be the same; of nothing, nothing.
+double change(double before, double after) {
+  return before > 0 ? std::abs(after - before) / before : 0;
+}
+
+std::string percent(double part) {
+  return std::to_string(std::max(1L, std::lround(100 * part))) + " %";
+}
+
+// Adds a warning where the result is not quite the shape that the file holds.
+void warn_of_change(double area_before, double volume_before, const TriangleSoup& after,
+                    const Counts& counts, Warnings& warnings) {
+  const double area = change(area_before, area_mm2(after));
+  const double volume = change(volume_before, signed_volume_mm3(after));
+  std::string text;
+  if (area > kChanged) text = "area by " + percent(area);
+  if (volume > kChanged)
+    text += (text.empty() ? "" : " and its ") + ("volume by " + percent(volume));
+  if (text.empty() && !counts.is_skin) return;
+  std::string sentence = text.empty() ? "" : "Mending the model changed its " + text;
+  if (counts.is_skin)
+    sentence += (text.empty() ? "The model" : ": it") +
+                std::string(
+                    " was open over its whole width and was closed to a solid body; if it "
+                    "is a skin without thickness, give it one in the program it was drawn "
+                    "with");
+  else if (counts.swallowed > 0)
+    sentence += ": pieces within other pieces, turned like them, are matter, not cavities";
+  warnings.push_back({"shape_changed", sentence});
 }
 
 }  // namespace
@@ -267,13 +275,20 @@ Mesh repair(const TriangleSoup& input, Warnings& warnings, const Progress& progr
   soup = welded(soup, 0);
   if (soup.triangles.size() < 4) refuse("it has fewer than four triangles");
   counts.degenerate_facets += count_flat(soup);
-  if (counts.degenerate_facets > 0 || !is_closed_manifold(soup))
-    soup = closed(std::move(soup), counts, progress);
+  const double area_before = area_mm2(soup);
+  const bool is_closed = is_closed_manifold(soup);
+  const double volume_before = is_closed ? std::abs(signed_volume_mm3(soup)) : 0;
+  TriangleSoup of_file = soup;
+  if (counts.degenerate_facets > 0 || !is_closed) soup = closed(of_file, counts, progress);
   progress.report("repairing", 0.7);
-  const int parts = orient_outwards(soup, counts);
-  if (parts == 0) refuse("it encloses no volume");
+  const Orientation orientation = orient_outwards(soup);
+  counts.facets_removed += orientation.facets_removed;
+  counts.swallowed = orientation.swallowed;
+  counts.facets_reversed = count_turned(of_file, soup);
+  if (orientation.pieces == 0) refuse("it encloses no volume");
   if (!is_closed_manifold(soup)) refuse("some holes or crossing sheets could not be mended");
-  if (counts.any()) warnings.push_back({"repaired", told(counts, parts)});
+  if (counts.any()) warnings.push_back({"repaired", told(counts, orientation.pieces)});
+  warn_of_change(area_before, volume_before, soup, counts, warnings);
   Mesh mesh = closed_mesh(soup);
   progress.report("repairing", 1);
   return mesh;

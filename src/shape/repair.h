@@ -9,10 +9,12 @@ namespace packmerger {
 
 // Welds equal points, drops degenerate and duplicate triangles, orients neighbouring triangles
 // alike, separates sheets that touch in an edge or at a vertex, stitches borders, drops loose
-// shards, fills holes, and orients components outwards; components inside another one are cavities
-// when their file orientation or nesting says so. What was changed is told in one warning with code
-// "repaired" whose text counts it: open edges, facets without area, edges mended, facets removed,
-// turned round and added, holes filled, and the pieces where there are several.
+// shards, fills holes, and orients pieces outwards (see orient.h for pieces
+// inside others), and divides edges on which other edges end. What was changed is told in one
+// warning with code "repaired" whose text counts it: open edges, facets without area, edges mended,
+// facets removed, turned round and added, holes filled, pieces within matter, and the pieces where
+// there are several. Where that changed the area by more than 1 %, or the volume of what was closed
+// before, or closed what was open over its whole width, "shape_changed" tells it.
 //
 // A closed 2-manifold that is oriented outwards passes unchanged: the same points and triangles in
 // the same order, no warning.

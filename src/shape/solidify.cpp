@@ -14,6 +14,9 @@
 namespace packmerger {
 namespace {
 
+// What moves a point by more than this part of the longest side changes the shape.
+constexpr double kChanged = 0.01;
+
 std::string at_most(double mm) {
   if (mm < 0.01) return "less than 0.01 mm";
   char text[32];
@@ -63,6 +66,10 @@ Solidified solidify(const Mesh& model, const ShapeSettings& settings, bool hollo
                                           : "No tetrahedra could be made inside the surface") +
                           ", so it was re-sampled: it deviates from the model by " +
                           at_most(resampled.deviation_mm)});
+    if (resampled.deviation_mm > kChanged * bounding_box(model).sizes().maxCoeff())
+      warnings.push_back({"shape_changed", "Re-sampling moved the surface by " +
+                                               at_most(resampled.deviation_mm) +
+                                               ", more than 1 % of the model's longest side"});
     return with_warnings(std::move(*solid));
   }
   throw Error(Fault::kBadInput, "No tetrahedra can be made of the model, re-sampled or not",

@@ -21,8 +21,8 @@ struct Solidified {
 
 // model: as repair() returns it, mm. hollow_it false: no cavities are made.
 // A surface that intersects itself, or that TetGen refuses, is re-sampled.
-// Warnings: "resampled", and those of hollow().
-// Throws Error{kBadInput} when no tetrahedra can be made.
+// Warnings: "resampled", "shape_changed" where that moved the surface by more than 1 % of the
+// longest side, and those of hollow(). Throws Error{kBadInput} when no tetrahedra can be made.
 Solidified solidify(const Mesh& model, const ShapeSettings& settings, bool hollow_it,
                     Warnings& warnings, const Progress& progress);
 

@@ -147,6 +147,24 @@ int drop_duplicates(TriangleSoup& soup) {
   }));
 }
 
+int count_turned(const TriangleSoup& before, const TriangleSoup& after) {
+  TriangleSoup both = before;
+  append(both, after);
+  both = welded(both, 0);
+  std::unordered_map<std::array<std::int64_t, 3>, bool, CellHash> even_before;
+  int turned = 0;
+  for (std::size_t i = 0; i < both.triangles.size(); ++i) {
+    const auto [corners, even] = sorted(both.triangles[i]);
+    const std::array<std::int64_t, 3> key{corners[0], corners[1], corners[2]};
+    if (i < before.triangles.size()) {
+      even_before.emplace(key, even);
+    } else if (const auto same = even_before.find(key); same != even_before.end()) {
+      turned += same->second != even ? 1 : 0;
+    }
+  }
+  return turned;
+}
+
 int count_open_edges(const TriangleSoup& soup) {
   std::unordered_map<std::uint64_t, int> sides;
   for (const Triangle& t : soup.triangles)

@@ -22,6 +22,9 @@ int drop_collapsed(TriangleSoup& soup);
 // other (a wall between two bodies). Returns how many were dropped.
 int drop_duplicates(TriangleSoup& soup);
 
+// Of after's triangles those whose places are a triangle's of before, turned over.
+int count_turned(const TriangleSoup& before, const TriangleSoup& after);
+
 // Edges that do not have exactly two triangles.
 int count_open_edges(const TriangleSoup& soup);
 

@@ -40,9 +40,9 @@ class Border {
     if (!(length > 0)) return {};
     const Vec3 direction = (soup_.points[b] - from) / length;
     std::vector<std::pair<double, int>> found;
-    const auto [low, high] = std::minmax(along(from), along(soup_.points[b]));
-    for (auto at = std::lower_bound(ordered_.begin(), ordered_.end(),
-                                    std::pair(low - tolerance_mm, -1));
+    const auto [low, high] = std::minmax({along(from), along(soup_.points[b])});
+    for (auto at =
+             std::lower_bound(ordered_.begin(), ordered_.end(), std::pair(low - tolerance_mm, -1));
          at != ordered_.end() && at->first <= high + tolerance_mm; ++at) {
       const int point = at->second;
       if (point == a || point == b || point == opposite) continue;

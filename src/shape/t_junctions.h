@@ -8,8 +8,8 @@
 namespace packmerger {
 
 // Divides the triangles along an open edge on which other open edges end, at every point that is
-// nearer to the edge than tolerance_mm; a chain of such points at once. No point moves. soup: welded
-// within that tolerance. Returns how many edges were divided. Throws Error{kInterrupted}.
+// nearer to the edge than tolerance_mm; a chain of such points at once. No point moves. soup:
+// welded within that tolerance. Returns how many edges were divided. Throws Error{kInterrupted}.
 int divide_at_t_junctions(TriangleSoup& soup, double tolerance_mm, const Progress& progress);
 
 }  // namespace packmerger

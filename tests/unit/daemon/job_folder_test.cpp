@@ -42,7 +42,7 @@ TEST(JobFolder, ReadsTheReport) {
   EXPECT_TRUE(packing_pays(job));
 }
 
-TEST(JobFolder, OnlyAWarningOfItsSizeIsADoubtAboutAModel) {
+TEST(JobFolder, OnlyWarningsOfSizeAndShapeAreDoubtsAboutAModel) {
   const TemporaryFolder folder;
   const auto doubt = [&](const std::string& warnings) {
     std::string report = kReport;
@@ -54,6 +54,8 @@ TEST(JobFolder, OnlyAWarningOfItsSizeIsADoubtAboutAModel) {
   EXPECT_EQ(doubt(repaired), "");
   EXPECT_EQ(doubt(repaired + R"(, {"code": "suspicious_size", "text": "it measures 2 mm"})"),
             "it measures 2 mm");
+  EXPECT_EQ(doubt(repaired + R"(, {"code": "shape_changed", "text": "its area by 9 %"})"),
+            "its area by 9 %");
 }
 
 TEST(JobFolder, EveryDoubtAboutAProgramButWhatWasLeftOut) {

@@ -20,16 +20,16 @@ using testing::HasSubstr;
 
 struct Repaired {
   Mesh mesh;
-  std::string text;  // of the warning; empty without one
+  std::string text;     // of the warning "repaired"; empty without one
+  std::string changed;  // of the warning "shape_changed"
 };
 
 Repaired repaired(const TriangleSoup& soup) {
   Warnings warnings;
-  Repaired result{repair(soup, warnings, Progress()), ""};
-  EXPECT_LE(warnings.size(), 1u);
+  Repaired result{repair(soup, warnings, Progress()), "", ""};
   for (const Warning& warning : warnings) {
-    EXPECT_EQ(warning.code, "repaired");
-    result.text = warning.text;
+    EXPECT_THAT(warning.code, testing::AnyOf("repaired", "shape_changed"));
+    (warning.code == "repaired" ? result.text : result.changed) = warning.text;
   }
   EXPECT_TRUE(is_closed_manifold(to_soup(result.mesh)));
   return result;
@@ -113,12 +113,90 @@ TEST(Repair, TurnsSingleTriangles) {
   EXPECT_GT(volume_mm3(result.mesh), 0);
 }
 
-TEST(Repair, ComponentsInsideOthersAreCavities) {
-  // Both cubes outwards, both inwards: the inner one is a cavity either way.
+TEST(Repair, APieceWithinAnotherIsWhatItsTurningSays) {
+  const TriangleSoup outer = fixtures::cube(20);
   const TriangleSoup inner = fixtures::box(Vec3::Constant(6), Vec3::Constant(14));
-  const TriangleSoup both = together(fixtures::cube(20), inner);
-  EXPECT_NEAR(volume_mm3(repaired(both).mesh), 8000 - 512, 1e-9);
-  EXPECT_NEAR(volume_mm3(repaired(fixtures::reversed(both)).mesh), 8000 - 512, 1e-9);
+  const TriangleSoup core = fixtures::box(Vec3::Constant(8), Vec3::Constant(12));
+  const auto check = [](const TriangleSoup& model, double volume, bool is_told) {
+    for (const bool inside_out : {false, true}) {
+      const Repaired result = repaired(inside_out ? fixtures::reversed(model) : model);
+      EXPECT_NEAR(volume_mm3(result.mesh), volume, 1e-9) << inside_out;
+      EXPECT_EQ(!result.changed.empty(), is_told) << result.changed;
+    }
+  };
+  check(together(outer, inner), 8000, true);
+  check(together(inner, outer), 8000, true);
+  check(together(outer, fixtures::reversed(inner)), 8000 - 512, false);
+  check(together(together(outer, fixtures::reversed(inner)), core), 8000 - 512 + 64, false);
+  check(together(together(outer, inner), core), 8000, true);
+}
+
+TEST(Repair, TurnsAPieceAsMostOfItsTrianglesAre) {
+  // The first triangles tell least: those of the cavity's wall are turned the wrong way.
+  TriangleSoup cavity = fixtures::reversed(fixtures::box(Vec3::Constant(6), Vec3::Constant(14)));
+  for (const int i : {0, 1, 2}) std::swap(cavity.triangles[i][0], cavity.triangles[i][1]);
+  const Repaired result = repaired(together(cavity, fixtures::cube(20)));
+  EXPECT_NEAR(volume_mm3(result.mesh), 8000 - 512, 1e-9);
+  EXPECT_THAT(result.text, HasSubstr("3 facets turned round"));
+}
+
+TEST(Repair, NeverTurnsMoreTrianglesThanThereAre) {
+  TriangleSoup soup = fixtures::reversed(fixtures::cube(10));
+  for (const int i : {0, 5}) std::swap(soup.triangles[i][0], soup.triangles[i][1]);
+  EXPECT_THAT(repaired(soup).text, HasSubstr(" 10 facets turned round"));
+}
+
+// A cube of 10 mm whose edges on the top are divided at these places, on one side only.
+TriangleSoup cube_with_divided_edge(const std::vector<double>& places) {
+  TriangleSoup soup = fixtures::cube(10);
+  const auto corner = [&](const Vec3& at) {
+    return static_cast<int>(std::find(soup.points.begin(), soup.points.end(), at) -
+                            soup.points.begin());
+  };
+  const int a = corner({0, 0, 10});
+  const int b = corner({10, 0, 10});
+  const auto holds = [&](const auto& t, int point) {
+    return std::find(t.begin(), t.end(), point) != t.end();
+  };
+  const auto found = std::find_if(soup.triangles.begin(), soup.triangles.end(),
+                                  [&](const auto& t) { return holds(t, a) && holds(t, b); });
+  auto t = *found;
+  soup.triangles.erase(found);
+  while (t[2] == a || t[2] == b) std::rotate(t.begin(), t.begin() + 1, t.end());
+  int last = t[0];
+  for (const double place : places) {
+    const Vec3 from = soup.points[t[0]];
+    const Vec3 to = soup.points[t[1]];
+    soup.points.push_back(from + place * (to - from));
+    soup.triangles.push_back({last, static_cast<int>(soup.points.size()) - 1, t[2]});
+    last = static_cast<int>(soup.points.size()) - 1;
+  }
+  soup.triangles.push_back({last, t[1], t[2]});
+  return soup;
+}
+
+TEST(Repair, MendsPointsOnEdges) {
+  for (const auto& places : {std::vector{0.5}, {0.25, 0.5}, {0.1, 0.2, 0.3, 0.7, 0.9}, {1.0 / 3}}) {
+    const Repaired result = repaired(exploded(cube_with_divided_edge(places)));
+    EXPECT_NEAR(volume_mm3(result.mesh), 1000, 1e-4);
+    EXPECT_EQ(result.mesh.n_vertices(), 8 + places.size());
+    EXPECT_THAT(result.text, HasSubstr(" mended"));
+    EXPECT_EQ(result.text.find("filled"), std::string::npos) << result.text;
+    EXPECT_EQ(result.changed, "");
+  }
+}
+
+TEST(Repair, TellsThatASkinBecameABody) {
+  TriangleSoup bell;
+  for (const auto& t : fixtures::sphere(10, 3).triangles) bell.triangles.push_back(t);
+  bell.points = fixtures::sphere(10, 3).points;
+  std::erase_if(bell.triangles, [&](const auto& t) {
+    return (bell.points[t[0]] + bell.points[t[1]] + bell.points[t[2]]).z() < 0;
+  });
+  EXPECT_THAT(repaired(bell).changed, HasSubstr("open over its whole width"));
+  TriangleSoup ball = fixtures::sphere(10, 3);
+  ball.triangles.pop_back();
+  EXPECT_EQ(repaired(ball).changed, "");
 }
 
 TEST(Repair, FillsHoles) {
