@@ -209,6 +209,7 @@ void Foreman::start_sending(const JobRecord& approved) {
               &record);
   std::error_code untold;  // the sender tells where its file cannot be made
   fs::create_directories(job_path(job.id), untold);
+  fs::remove_all(told_file(job), untold);  // of an attempt before, or nobody knows of whom
   sending_[job.printer] = job.id;
   live.control = std::make_shared<PrintControl>();
   live.print = {};

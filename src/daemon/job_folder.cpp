@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "daemon/child_json.h"
 
 namespace packmerger {
 namespace {
@@ -23,7 +24,7 @@ json read_report(const fs::path& folder) {
   if (!fs::exists(file, ignored))
     throw Error(Fault::kNoInput, folder.string() + " is no job folder: it holds no job.json",
                 "Name the folder that packmerger prepare --out wrote.");
-  const json report = json::parse(read_file(file, kMaxReportBytes), nullptr, false);
+  const json report = parse_child_json(read_file(file, kMaxReportBytes));
   if (!report.is_object() || report.value("version", json()) != 1)
     throw Error(Fault::kBadInput, file.string() + " is not the report of a job",
                 "Prepare the model again.");
@@ -32,9 +33,8 @@ json read_report(const fs::path& folder) {
 
 int count_trays(const json& report) {
   int trays = 1;
-  for (const json& part : report.at("parts")) trays = std::max(trays, part.at("tray").get<int>());
-  if (trays > kMaxTrays)
-    throw Error(Fault::kBadInput, "The job has more than 10000 trays", "Prepare the model again.");
+  for (const json& part : report.at("parts"))
+    trays = std::max(trays, static_cast<int>(whole_number_in(part, "tray", 1, kMaxTrays)));
   return trays;
 }
 
@@ -89,18 +89,20 @@ PreparedJob read_prepared(const fs::path& folder) {
     PreparedJob job;
     const json& input = report.at("inputs").at(0);
     job.trays = count_trays(report);
-    job.title = fs::path(input.at("file").get<std::string>()).stem().string();
-    job.input_sha256 = input.at("sha256").get<std::string>();
-    job.variant = report.value("variant", "packed");
-    job.profile = report.value("profile", json::object()).value("id", "");
-    job.seed = report.value("seed", std::int64_t{0});
+    check_estimates(report.at("estimates"));
+    job.title = fs::path(text_in(input, "file")).stem().string();
+    job.input_sha256 = text_in(input, "sha256");
+    if (report.contains("variant")) job.variant = text_in(report, "variant");
+    if (report.contains("profile")) job.profile = text_in(report.at("profile"), "id");
+    if (report.contains("seed"))
+      job.seed = whole_number_in(report, "seed", 0, std::numeric_limits<std::int64_t>::max());
     const bool is_model = job.variant != kProgramVariant;
     for (const json& warning : report.value("warnings", json::array())) {
-      const std::string code = warning.at("code").get<std::string>();
+      const std::string code = text_in(warning, "code");
       const bool matters = code == "suspicious_size" || code == "shape_changed";
       // what a Replicator has nothing like harms nobody
       const bool asks = is_model ? matters : code != "left_out";
-      if (asks && job.warning.empty()) job.warning = warning.at("text").get<std::string>();
+      if (asks && job.warning.empty()) job.warning = text_in(warning, "text");
     }
     if (const json* estimate = estimate_of(report.at("estimates"), job.variant)) {
       job.predicted_s = estimate->value("time_s", 0.0);

@@ -18,15 +18,15 @@ inline constexpr const char* kPrepareAnew =
 
 struct PreparedJob {
   int trays = 1;
-  std::string title;         // the first input's name without its ending
-  std::string input_sha256;  // of the first input
-  std::string profile;       // its id
-  std::int64_t seed = 0;     // 0 for a program
-  std::string variant;       // what was prepared: packed, hollow, solid or program
-  std::string estimates;     // job.json's "estimates", JSON text
-  double predicted_s = 0;    // by the estimate of that variant; 0: none
-  std::string predicted_by;  // its source
-  std::string warning;       // a program's first one, a model's of its size; empty: none
+  std::string title;               // the first input's name without its ending
+  std::string input_sha256;        // of the first input
+  std::string profile;             // its id
+  std::int64_t seed = 0;           // 0 for a program
+  std::string variant = "packed";  // what was prepared: packed, hollow, solid or program
+  std::string estimates;           // job.json's "estimates", JSON text
+  double predicted_s = 0;          // by the estimate of that variant; 0: none
+  std::string predicted_by;        // its source
+  std::string warning;             // a program's first one, a model's of its size; empty: none
 };
 
 // Throws Error{kNoInput} when folder is no job folder, Error{kBadInput} when its job.json is not

@@ -55,10 +55,14 @@ std::optional<Told> read_told(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
   Told told;
-  const std::string text = read_file(path, kMostBytes);
-  if (std::sscanf(text.c_str(), "acknowledged %zu of %zu", &told.done, &told.total) != 2)
+  try {
+    const std::string text = read_file(path, kMostBytes);
+    const bool is_record =
+        std::sscanf(text.c_str(), "acknowledged %12zu of %12zu", &told.done, &told.total) == 2;
+    return is_record && told.done <= told.total ? std::optional(told) : std::nullopt;
+  } catch (const Error&) {
     return std::nullopt;
-  return told;
+  }
 }
 
 std::string told_text(const Told& told, std::string_view unit) {

@@ -37,7 +37,8 @@ class ProgressFile {
   std::chrono::steady_clock::time_point synced_at_ = std::chrono::steady_clock::now();
 };
 
-// What the file says; nothing where there is none, or where the print had not begun.
+// What the file says; nothing where there is none, where it is no such record, or where the print
+// had not begun.
 std::optional<Told> read_told(const fs::path& path);
 
 // "line 120 of 300 (40 %)"; unit: "line" or "byte".

@@ -5,9 +5,9 @@
 
 #include <charconv>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "base/process.h"
+#include "daemon/child_json.h"
 #include "daemon/job_folder.h"
 #include "daemon/move_file.h"
 
@@ -73,12 +73,17 @@ fs::path clean_temporary(const PrepareOrder& order) {
   return temporary;
 }
 
-// What `packmerger compare --json` printed of its one profile.
-std::string estimates_in(const std::string& out) {
-  const auto all = nlohmann::json::parse(out, nullptr, false);
-  if (!all.is_object() || all.size() != 1)
-    throw Error(Fault::kInternal, "The comparison cannot be read", "Please report this as a bug.");
-  return all.begin()->dump();
+// A child may write below its job's folder, and what it leaves there is read later, by us and by
+// others: a link would lead out of it, and a pipe would keep its reader waiting for ever.
+void check_only_files(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::file_status status = entry.symlink_status();
+    if (!fs::is_regular_file(status) && !fs::is_directory(status))
+      throw Error(Fault::kBadInput,
+                  "Preparing left something that is no file: " +
+                      printable(entry.path().filename().string()),
+                  "Drop the model again; if that does not help, report it as a bug.");
+  }
 }
 
 // A printer that a model cannot be printed on is told with the others.
@@ -92,7 +97,7 @@ Compared compare(const PrepareOrder& order, Queue<Event>& events) {
       const ProcessResult result =
           run_child({order, each.argv, each.printer + ": "}, temporary, events);
       check_result(result, order.limits.time_s);
-      printer.estimates = estimates_in(result.out);
+      printer.estimates = compared_estimates(result.out);
     } catch (const Error& error) {
       if (error.fault() == Fault::kInterrupted) throw;
       printer.failure = error.what();
@@ -107,6 +112,8 @@ Prepared prepare(const PrepareOrder& order, Queue<Event>& events) {
   events.push(Hashed{order.job, sha256});
   const fs::path temporary = clean_temporary(order);
   check_result(run_child({order, order.argv, ""}, temporary, events), order.limits.time_s);
+  remove_leftovers(order.out, temporary);
+  check_only_files(order.out.parent_path());
   const PreparedJob job = read_prepared(order.out);
   if (job.input_sha256 != sha256)
     throw Error(Fault::kBusy, "The model was changed while it was being read",
@@ -141,7 +148,7 @@ std::optional<ProgressLine> progress_line(std::string_view line) {
   const auto [end, failed] = std::from_chars(digits.begin(), digits.end(), percent);
   if (failed != std::errc() || end != digits.end() || percent < 0 || percent > 100)
     return std::nullopt;
-  return ProgressLine{std::string(line.substr(close + 3, 200)), percent / 100.0};
+  return ProgressLine{printable(line.substr(close + 3, 200)), percent / 100.0};
 }
 
 Failure child_failure(int exit_code, int signal, std::string_view standard_error) {
@@ -150,8 +157,8 @@ Failure child_failure(int exit_code, int signal, std::string_view standard_error
     const std::size_t end = std::min(standard_error.find('\n'), standard_error.size());
     const std::string_view line = standard_error.substr(0, std::min(end, kMaxReason));
     standard_error.remove_prefix(std::min(end + 1, standard_error.size()));
-    if (line.starts_with("error: ")) failure.what = line.substr(7);
-    if (line.starts_with("hint: ")) failure.hint = line.substr(6);
+    if (line.starts_with("error: ")) failure.what = printable(line.substr(7));
+    if (line.starts_with("hint: ")) failure.hint = printable(line.substr(6));
   }
   for (const Fault fault : {Fault::kUsage, Fault::kBadInput, Fault::kNoInput, Fault::kUnavailable,
                             Fault::kCannotWrite, Fault::kIo, Fault::kBusy, Fault::kBadProfile})

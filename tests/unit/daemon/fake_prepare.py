@@ -88,7 +88,14 @@ for tray in range(1, trays + 1):
         mesh.write(bytes(84))
 with open(os.path.join(temporary, "preview.png"), "wb") as picture:
     picture.write(b"\x89PNG")
+if "types" in name:
+    report["parts"], report["estimates"]["packed"]["parts"] = [{"tray": 1.5}], "two"
 with open(os.path.join(temporary, "job.json"), "w") as file:
     json.dump(report, file)
+if "pipe" in name:
+    os.remove(os.path.join(temporary, "program.gcode"))
+    os.mkfifo(os.path.join(temporary, "program.gcode"))
+if "link" in name:
+    os.symlink("/etc/passwd", os.path.join(temporary, "preview.glb"))
 os.rename(temporary, out)
 say("[100%] writing")

@@ -109,6 +109,23 @@ TEST_F(WorkerTest, TellsWhyItFailed) {
   EXPECT_TRUE(std::holds_alternative<Prepared>(end_of(order("good.stl")))) << "and goes on";
 }
 
+TEST_F(WorkerTest, WhatNoChildMayLeaveFailsItsJob) {
+  for (const char* name : {"types.stl", "pipe.stl", "link.stl"}) {
+    PrepareOrder each = order(name);
+    each.out = folder_.path() / name / "job";
+    fs::remove(each.input);
+    each.input = folder_.path() / (std::string("model-") + name);
+    std::ofstream(each.input) << "model";
+    each.argv[2] = each.input.string();
+    each.argv.back() = each.out.string();
+    fs::create_directories(each.out.parent_path());
+    const Event end = end_of(each);
+    ASSERT_TRUE(std::holds_alternative<PrepareFailed>(end)) << name;
+    EXPECT_EQ(std::get<PrepareFailed>(end).failure.fault, Fault::kBadInput) << name;
+    EXPECT_FALSE(std::get<PrepareFailed>(end).failure.hint.empty()) << name;
+  }
+}
+
 TEST_F(WorkerTest, AHungryChildIsStopped) {
   EXPECT_THAT(std::get<PrepareFailed>(end_of(order("memory.stl"))).failure.what,
               HasSubstr("not enough memory"));
