@@ -157,6 +157,8 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   if (handed_over) return end(job, JobState::kHandedOver, "", "", event.note);
   const std::string note = with_told(job, "tray " + std::to_string(job.next_tray) + " is printed");
   if (job.next_tray >= job.trays) return end(job, JobState::kDone, "", "", note);
+  if (live.control && live.control->cancelled() && !live.ended_by_stop)  // in its last moment
+    return end(job, JobState::kCancelled, "cancelled: " + note + ", and no further one", "");
   ++job.next_tray;
   job.state = JobState::kApproved;
   store_.save(job, note);

@@ -140,6 +140,7 @@ void FrontDesk::close() {
 
 void FrontDesk::answer_questions() {
   while (const auto question = questions_.try_pop()) {
+    if (!(*question)->begin()) continue;  // taken back
     const auto& ask = (*question)->ask;
     if (const auto* request = std::get_if<std::string>(&ask))
       (*question)->answer.set_value(answer(foreman_, keys_, *request));

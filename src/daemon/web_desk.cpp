@@ -1,6 +1,5 @@
 #include "daemon/web_desk.h"
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -12,8 +11,6 @@ namespace packmerger {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::chrono::seconds kPatience(20);
 
 // What the loop answered, as HTTP tells it.
 HttpReply reply_of(const std::string& answer) {
@@ -55,8 +52,10 @@ HttpReply WebDesk::ask(std::variant<std::string, UploadedJob> question) const {
   asked->ask = std::move(question);
   std::future<std::string> answer = asked->answer.get_future();
   questions_.push(asked);
-  if (answer.wait_for(kPatience) == std::future_status::ready) return reply_of(answer.get());
-  return web_error(503, Fault::kBusy, "The daemon is busy", "Try again in a moment.");
+  if (answer.wait_for(patience_) != std::future_status::ready && asked->take_back())
+    return web_error(503, Fault::kBusy, "The daemon is busy, and nothing was done",
+                     "Try again in a moment.");
+  return reply_of(answer.get());
 }
 
 HttpReply WebDesk::take(UploadedJob upload) const {

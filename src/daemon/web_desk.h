@@ -1,6 +1,8 @@
 // Questions of the web server's connections to the loop, and its answers as HTTP tells them.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <optional>
@@ -17,16 +19,26 @@ namespace packmerger {
 struct WebQuestion {
   std::variant<std::string, UploadedJob> ask;  // a request as JSON text
   std::promise<std::string> answer;
+
+  // Either the loop begins to answer it, or whoever asked takes it back: false for the later of the
+  // two. What was taken back is never done.
+  bool begin() { return !settled_.exchange(true); }
+  bool take_back() { return !settled_.exchange(true); }
+
+ private:
+  std::atomic<bool> settled_{false};
 };
 using WebQuestions = Queue<std::shared_ptr<WebQuestion>>;
 
 // Thread-safe.
 class WebDesk {
  public:
-  explicit WebDesk(WebQuestions& questions) : questions_(questions) {}
+  explicit WebDesk(WebQuestions& questions,
+                   std::chrono::milliseconds patience = std::chrono::seconds(20))
+      : questions_(questions), patience_(patience) {}
 
-  // The loop's result as JSON with status 200, or its error with the status that suits it. Waits
-  // some seconds at most, then it is 503.
+  // The loop's result as JSON with status 200, or its error with the status that suits it. What the
+  // loop does not begin within some seconds is taken back, and answered with 503.
   HttpReply ask(std::variant<std::string, UploadedJob> question) const;
 
   // The one way in for files, whichever door they came through: a job for the printer, and status
@@ -35,6 +47,7 @@ class WebDesk {
 
  private:
   WebQuestions& questions_;
+  std::chrono::milliseconds patience_;
 };
 
 // What the loop's faults are in HTTP: 404, 409, 422 or 500.

@@ -162,6 +162,26 @@ TEST(Foreman, APrinterThatIsNotThereIsTriedAgainOnTheSameClearBed) {
   }
 }
 
+// The printer had done the tray before it heard of the cancel.
+TEST(Foreman, ACancelInATraysLastMomentPrintsNoFurtherTray) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order(), 2);
+  ASSERT_TRUE(shop.send_order("sim"));
+  shop.foreman_->cancel(1);
+  shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
+  EXPECT_EQ(shop.job(1).state, JobState::kCancelled);
+  EXPECT_EQ(shop.job(1).reason, "cancelled: tray 1 is printed, and no further one");
+  EXPECT_FALSE(shop.send_order("sim"));
+
+  shop.drop("sim", "b.stl");
+  shop.prepare(*shop.prepare_order());
+  ASSERT_TRUE(shop.send_order("sim"));
+  shop.foreman_->cancel(2);
+  shop.tell(SendEnded{2, SendOutcome::kDone, {}, ""});
+  EXPECT_EQ(shop.job(2).state, JobState::kDone) << "all of it was printed";
+}
+
 TEST(Foreman, AgainUsesTheStoredProgramOrTheFiledModel) {
   Workshop shop;
   shop.drop("sim", "a.stl");
