@@ -10,8 +10,6 @@ namespace {
 
 constexpr int kMaxSameResend = 10;
 constexpr int kTriesPerTimeout = 5;
-// A request for a line further back than this is noise, or the printer was reset.
-constexpr std::size_t kSlack = 10;
 // The ok that belongs to a Resend follows at once; some firmwares send none.
 constexpr double kResendWait_s = 0.5;
 // Marlin says "busy" every two seconds unless it is told otherwise (M113).
@@ -110,7 +108,10 @@ void GcodeStream::handle_busy(const GcodeReply& reply) {
   const double now = channel_.now_s();
   busy_seen_ = true;
   busy_interval_s_ = std::max(busy_interval_s_, now - std::exchange(busy_at_s_, now));
-  if (reply.waiting && !cancelling_) reporter_.state(PrintState::kWaiting, prompt_, choices_);
+  if (cancelling_)
+    hear_while_cancelling(reply);
+  else if (reply.waiting)
+    reporter_.state(PrintState::kWaiting, prompt_, choices_);
 }
 
 void GcodeStream::watch_silence() {

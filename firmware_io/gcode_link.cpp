@@ -67,8 +67,13 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
   GcodeStream stream(channel, std::move(texts), options, abilities, reporter, control);
   try {
     stream.run();
+  } catch (const Error& error) {
+    if (!stream.may_send()) throw;
+    send_text(channel, options.safe_gcode + "\n" + silence);
+    if (stream.was_cancelled() && error.fault() == Fault::kIo) stream.throw_failed_cancel(error);
+    throw;
   } catch (...) {
-    if (stream.may_send()) send_text(channel, options.safe_gcode + "\n" + silence);
+    send_text(channel, options.safe_gcode + "\n" + silence);
     throw;
   }
   send_text(channel, silence);

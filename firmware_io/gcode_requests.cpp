@@ -8,8 +8,6 @@ namespace packmerger {
 
 namespace {
 
-// Lines this far back may still be asked for again.
-constexpr std::size_t kSlack = 10;
 // How often a printer that stands still is asked for its temperatures, which keeps it and the line
 // awake.
 constexpr double kPoll_s = 2;
@@ -23,6 +21,7 @@ std::vector<std::string> gcode_lines(const std::string& text) {
 }
 
 void GcodeStream::obey_requests() {
+  if (control_.left()) leave_at_once();
   if (control_.stopped()) stop_at_once();
   if (control_.cancelled() && !cancelling_) begin_cancel();
   if (const auto wanted = control_.take_pause_request()) {
@@ -40,23 +39,6 @@ void GcodeStream::stop_at_once() {
   may_send_ = false;
   channel_.send("\nM112");
   throw_stopped();
-}
-
-// M410 drops the planned moves, M108 ends a wait for heat or for the user. Both are obeyed at once
-// only when they are not numbered. The program is then replaced by the safe text; what the printer
-// may still ask for again becomes M105, which does nothing.
-void GcodeStream::begin_cancel() {
-  cancelling_ = true;
-  paused_ = false;
-  reporter_.state(PrintState::kCancelling);
-  send_raw("M410");
-  send_raw("M108");
-  const std::size_t first =
-      std::min(highest_ > kSlack ? highest_ - kSlack : 1, commands_.size() + 1);
-  commands_.resize(highest_);
-  for (std::size_t i = first; i <= highest_; ++i) commands_[i - 1] = "M105";
-  for (std::string& line : gcode_lines(options_.safe_gcode)) commands_.push_back(std::move(line));
-  position_seen_ = false;
 }
 
 // A machine that says "paused" has parked by itself; one that says "pause" leaves that to its host.

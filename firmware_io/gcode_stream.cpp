@@ -78,6 +78,7 @@ std::size_t GcodeStream::exchange(std::size_t number) {
       return resend_->number;
     }
     obey_requests();
+    press_on_with_cancel();
     reporter_.tick();
     if (may_give_another()) give(last_ + 1);
     ask_temperatures();
@@ -176,7 +177,7 @@ void GcodeStream::handle(const GcodeReply& reply) {
       if (gcode_word(command(last_)) != "M114") positions_unasked_ = true;
       break;
     default:
-      if (!cancelling_) handle_action(reply);
+      cancelling_ ? hear_while_cancelling(reply) : handle_action(reply);
       break;
   }
 }

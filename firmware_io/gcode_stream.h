@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode_channel.h"
 #include "firmware_io/heat_watch.h"
@@ -31,10 +32,15 @@ class GcodeStream {
 
   bool was_cancelled() const { return cancelling_; }
   bool was_cancelled_at_printer() const { return cancelled_at_printer_; }
+  // After a cancel, in the place of what went wrong on its way.
+  [[noreturn]] void throw_failed_cancel(const Error& error) const;
   // False once the printer was reset or stopped at once: nothing may be sent to it any more.
   bool may_send() const { return may_send_; }
 
  private:
+  // Lines this far back may still be asked for again; a request for one further back is noise, or
+  // the printer was reset.
+  static constexpr std::size_t kSlack = 10;
   // Lines on their way at most: Marlin queues four and reads no further.
   static constexpr std::size_t kMostLines = 3;
   // Further answers on their way settle whether a request for a line is still true.
@@ -94,11 +100,18 @@ class GcodeStream {
   // gcode_requests.cpp: what people and the machine ask for
   void obey_requests();
   [[noreturn]] void stop_at_once();
-  void begin_cancel();
   void handle_action(const GcodeReply& reply);
   std::size_t pause(std::size_t number);
   void stand_still();
   std::size_t execute_between(std::size_t number, const std::vector<std::string>& lines);
+
+  // gcode_cancel.cpp: how a cancel ends
+  void begin_cancel();
+  void hear_while_cancelling(const GcodeReply& reply);
+  void press_on_with_cancel();
+  [[noreturn]] void halt_in_cancel();
+  [[noreturn]] void leave_at_once();
+  Fault fault_of_cancel() const;
 
   GcodeChannel& channel_;
   std::vector<std::string> commands_;
@@ -108,6 +121,10 @@ class GcodeStream {
   PrintControl& control_;
 
   bool cancelling_ = false;
+  double cancelled_at_s_ = 0;
+  bool asks_ = false;          // while cancelling: the printer waits for its user,
+  double answer_at_s_ = 0;     // who answers then,
+  double answer_every_s_ = 2;  // and again
   bool cancelled_at_printer_ = false;
   bool may_send_ = true;
   bool position_seen_ = false;        // by an M114 behind the program

@@ -76,6 +76,14 @@ class PrintControl {
   void stop_at_once() { stopped_ = true; }
   bool stopped() const { return stopped_; }
 
+  // For a person who waits no longer for a cancel: the link writes what turns the heaters off, waits
+  // for nothing and ends. What cancels at once anyway only cancels.
+  void leave() {
+    left_ = true;
+    cancelled_ = true;
+  }
+  bool left() const { return left_; }
+
   // The print stands still at the end of a command, its heaters on, until it is resumed or
   // cancelled; state kPaused says when. Resuming also ends a pause that the machine began.
   void pause() { pause_request_ = 1; }
@@ -95,6 +103,7 @@ class PrintControl {
  private:
   std::atomic<bool> cancelled_{false};
   std::atomic<bool> stopped_{false};
+  std::atomic<bool> left_{false};
   std::atomic<int> pause_request_{-1};
   std::atomic<int> answer_{-1};
   const std::atomic<bool>* interrupted_ = nullptr;

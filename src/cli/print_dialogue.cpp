@@ -51,7 +51,7 @@ std::string question_of(const PrintReport& report) {
 
 PrintDialogue::PrintDialogue(PrintControl& control, bool asks)
     : control_(control), asks_(asks), bar_(::isatty(STDERR_FILENO) == 1) {
-  count_interrupts(asks ? 3 : 2);
+  count_interrupts(asks ? 4 : 3);
 }
 
 PrintDialogue::~PrintDialogue() { clear_bar(); }
@@ -72,7 +72,8 @@ void PrintDialogue::tell(const PrintReport& report) {
   const bool told = report.state == PrintState::kPaused || report.state == PrintState::kPrinting;
   if (told && !report.text.empty()) say(report.text);
   if (report.state == PrintState::kCancelling)
-    say("Cancelling, please wait until the printer has stopped.");
+    say(report.text.empty() ? "Cancelling, please wait until the printer has stopped."
+                            : "Cancelling: " + report.text + ".");
   if (report.state != PrintState::kWaiting && question_ == Question::kOfPrinter)
     question_ = Question::kNone;
 }
@@ -100,6 +101,11 @@ void PrintDialogue::hear_signals() {
   heard_ = interrupts();
   if (!again && !interrupted()) return;
   const std::lock_guard lock(mutex_);
+  if (heard_ >= (asks_ ? 3 : 2)) {
+    left_ = true;
+    question_ = Question::kNone;
+    return control_.leave();
+  }
   const bool pauses = again && asks_ && question_ != Question::kHowToGoOn && !interrupted();
   if (pauses && !cancelled_) {
     control_.pause();

@@ -9,8 +9,8 @@
 namespace packmerger::cli {
 
 // On a terminal the first Ctrl-C pauses the print and asks (go on, cancel, stop at once), the
-// second cancels; without one the first cancels. SIGTERM cancels. One more ends the program at
-// once.
+// second cancels; without one the first cancels. SIGTERM cancels. One more writes what turns the
+// heaters off and waits for nothing; a further one ends the program as it stands.
 class PrintDialogue {
  public:
   // asks: there is a person at a terminal.
@@ -24,6 +24,8 @@ class PrintDialogue {
 
   // On the other: hears signals and typed lines for a tenth of a second.
   void listen();
+  // A person waits no longer, not even for the printer.
+  bool has_left() const { return left_; }
 
  private:
   enum class Question { kNone, kHowToGoOn, kOfPrinter };
@@ -40,6 +42,7 @@ class PrintDialogue {
   const bool bar_;
   int heard_ = 0;  // interrupts
   bool cancelled_ = false;
+  bool left_ = false;
   bool input_ended_ = false;
   std::string typed_;
 

@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <future>
 #include <memory>
 #include <optional>
@@ -29,6 +32,17 @@ struct Arguments {
   bool json = false;
 };
 
+// How long the link may take to write the last it has to say.
+constexpr std::chrono::seconds kLeave{2};
+
+// The thread that prints cannot be waited for.
+[[noreturn]] void end_hot() {
+  fmt::print(stderr,
+             "\nEnded without an answer from the printer: its heaters may be on, look at it.\n");
+  std::fflush(stderr);
+  std::_Exit(128 + SIGINT);
+}
+
 // The print runs on a thread of its own; this one listens to people.
 void stream_watched(const Arguments& arguments, const std::string& port,
                     const fs::path& told_file) {
@@ -39,7 +53,10 @@ void stream_watched(const Arguments& arguments, const std::string& port,
         arguments.folder, arguments.tray, port, told_file,
         [&](const PrintReport& report) { dialogue.tell(report); }, control);
   });
-  while (print.wait_for(std::chrono::seconds(0)) != std::future_status::ready) dialogue.listen();
+  while (print.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    dialogue.listen();
+    if (dialogue.has_left() && print.wait_for(kLeave) != std::future_status::ready) end_hot();
+  }
   print.get();
 }
 
