@@ -11,6 +11,7 @@ import tomllib
 import unittest
 
 import program
+import unit_calls
 
 SOURCE = program.SOURCE
 BUILD = pathlib.Path(program.binary()).parents[1]
@@ -143,6 +144,10 @@ class Service(unittest.TestCase):
         complaints = [line for line in result.stderr.splitlines()
                       if "packmergerd.service" in line and "is not executable" not in line and "man " not in line]
         self.assertEqual(complaints, [])
+
+    @needs("systemd-analyze")
+    def test_every_call_that_is_needed_is_allowed(self):
+        self.assertEqual(unit_calls.NEEDED - unit_calls.allowed(self.UNIT.read_text()), set())
 
     def settings_are_good(self, text):
         with tempfile.TemporaryDirectory() as folder:
