@@ -65,7 +65,23 @@ Descriptor ruleset_for(const std::vector<std::filesystem::path>& writable) {
 }
 
 // Sockets of every kind, the daemon's own too, and what lets a process out of its place.
-constexpr int kForbidden[] = {SCMP_SYS(socket),
+// Landlock has no say over owners, times and attributes, and over truncate(2) only since Linux 6.2.
+constexpr int kForbidden[] = {SCMP_SYS(truncate),
+                              SCMP_SYS(chown),
+                              SCMP_SYS(lchown),
+                              SCMP_SYS(fchown),
+                              SCMP_SYS(fchownat),
+                              SCMP_SYS(utime),
+                              SCMP_SYS(utimes),
+                              SCMP_SYS(futimesat),
+                              SCMP_SYS(utimensat),
+                              SCMP_SYS(setxattr),
+                              SCMP_SYS(lsetxattr),
+                              SCMP_SYS(fsetxattr),
+                              SCMP_SYS(removexattr),
+                              SCMP_SYS(lremovexattr),
+                              SCMP_SYS(fremovexattr),
+                              SCMP_SYS(socket),
                               SCMP_SYS(io_uring_setup),
                               SCMP_SYS(ptrace),
                               SCMP_SYS(process_vm_readv),

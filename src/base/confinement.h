@@ -1,7 +1,8 @@
 // What a child process may not do although its user may: speak over a network, write outside some
 // folders, look into or change other processes and the system. Linux: a seccomp filter made by
 // libseccomp, and Landlock for the files. Both hold for everything the child starts, and cannot be
-// taken back.
+// taken back. What is not kept: it may change the mode of a file of its user wherever that lies,
+// and send signals to its user's processes.
 #pragma once
 
 #include <filesystem>

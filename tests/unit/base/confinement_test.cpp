@@ -78,6 +78,22 @@ TEST_F(ConfinementTest, NoWayIntoOtherProcesses) {
   EXPECT_FALSE(shell("unshare -r true"));
 }
 
+// Its own file is within reach of Landlock, whatever the kernel: here seccomp refuses.
+TEST_F(ConfinementTest, SeccompRefusesWhatLandlockDoesNotKnow) {
+  ASSERT_TRUE(shell("echo own > own"));
+  for (const char* attempt :
+       {"libc.truncate(b'own', 0)", "libc.chown(b'own', -1, -1)", "libc.utimes(b'own', None)",
+        "libc.setxattr(b'own', b'user.a', b'b', 1, 0)", "libc.removexattr(b'own', b'user.a')"})
+    EXPECT_TRUE(
+        python("import ctypes, sys\n"
+               "libc = ctypes.CDLL(None, use_errno=True)\n"
+               "refused = " +
+               std::string(attempt) +
+               " == -1 and ctypes.get_errno() == 13\n"
+               "sys.exit(0 if refused else 1)"))
+        << attempt;
+}
+
 TEST_F(ConfinementTest, AFolderThatIsNotThereIsTold) {
   ProcessSpec spec;
   spec.argv = {"/bin/true"};
