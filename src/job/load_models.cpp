@@ -18,6 +18,9 @@ namespace {
 constexpr double kSmallest = 5;    // mm; models drawn in units of one are often two of them long
 constexpr double kLargest = 2000;  // mm
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // what read_model takes
+// Outside of these no printer makes a model, and a wrong unit is the only explanation.
+constexpr double kUnbelievablySmall = 0.1;  // mm
+constexpr double kUnbelievablyLarge = 10000;
 
 double factor(const ModelFile& file, const Sizing& sizing) {
   if (sizing.size_mm) {
@@ -28,9 +31,14 @@ double factor(const ModelFile& file, const Sizing& sizing) {
   return sizing.scale * (file.has_unit ? 1 : sizing.unit_mm);
 }
 
-void warn_of_size(const std::string& name, const Mesh& surface, Warnings& warnings) {
+void check_size(const std::string& name, const Mesh& surface, Warnings& warnings) {
   const Vec3 size = bounding_box(surface).sizes();
   const double longest = size.maxCoeff();
+  if (longest < kUnbelievablySmall || longest > kUnbelievablyLarge)
+    throw Error(Fault::kBadInput,
+                fmt::format("{} measures {:.6g} x {:.6g} x {:.6g} mm, which no printer can make",
+                            name, size.x(), size.y(), size.z()),
+                "Check the model's unit, and use --units, --scale or --size where it is wrong.");
   if (longest >= kSmallest && longest <= kLargest) return;
   warnings.push_back(
       {"suspicious_size",
@@ -68,7 +76,7 @@ LoadedModel load_model(const std::filesystem::path& path, const Sizing& sizing, 
   if (!file.left_out.empty())
     warnings.push_back({"left_out", loaded.input.file + ": " + file.left_out +
                                         " of the slicer's project left out, the rest is printed"});
-  warn_of_size(loaded.input.file, *loaded.surface, warnings);
+  check_size(loaded.input.file, *loaded.surface, warnings);
   return loaded;
 }
 

@@ -26,7 +26,8 @@ struct LoadedModel {
 };
 
 // One entry per path, in order; a path named twice is read once. Adds warnings "repaired", "left_out" and
-// "suspicious_size" (longest side under 1 mm or over 2 m). Throws what read_model and repair throw.
+// "suspicious_size" (longest side under 5 mm or over 2 m). Throws what read_model and repair throw,
+// and Error{kBadInput} where the longest side is under 0.1 mm or over 10 m.
 std::vector<LoadedModel> load_models(const std::vector<std::filesystem::path>& paths,
                                      const Sizing& sizing, Warnings& warnings,
                                      const Progress& progress);

@@ -54,9 +54,14 @@ void check_settings(const PackProblem& problem) {
   const double widest_mm = problem.build_mm.head<2>().maxCoeff();
   if (cell_mm > problem.grid_mm || widest_mm / cell_mm > kMostCellsAcross)
     refuse("The packer's grid is too fine for this build volume", "Set a larger grid_mm.");
-  for (const PackItem& item : problem.items)
-    if (bounding_box(item.surface).sizes().norm() / cell_mm > kMostCellsAcross)
-      refuse("The packer's grid is too fine for a model of this size", "Set a larger grid_mm.");
+  for (const PackItem& item : problem.items) {
+    const Vec3 size = bounding_box(item.surface).sizes();
+    if (size.norm() / cell_mm > kMostCellsAcross)
+      throw Error(Fault::kBadInput,
+                  "A part measures " + std::to_string(std::lround(size.maxCoeff())) +
+                      " mm, more than the packer's grid can hold",
+                  "Check the model's unit, or set a larger grid_mm.");
+  }
 }
 
 // Stands in the tray's corner.

@@ -151,7 +151,11 @@ class ModelReader {
     if (known != parts_.end()) return known->second;
     ModelPart part;
     part.xml = archive_.part(path);
-    if (!part.xml) refuse_file("its ZIP archive holds no 3D model part");
+    if (!part.xml)
+      throw Error(Fault::kBadInput,
+                  "The model file is a ZIP archive that holds no 3D model part (" + path + ")",
+                  "If models are packed in it, unpack it and give them; else export the model "
+                  "again.");
     progress_.check();
     const pugi::xml_node model = child_named(part.xml->tree, "model");
     if (!model) refuse_file("its 3D model part holds no model");

@@ -1,6 +1,7 @@
 #include "shape/read_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <utility>
@@ -20,6 +21,60 @@ std::string lower_case(std::string_view text) {
     result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (result.starts_with('.')) result.erase(0, 1);
   return result;
+}
+
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+
+struct Signature {
+  std::string_view bytes;  // that such files begin with
+  const char* what;
+  const char* hint;
+};
+
+constexpr const char* kUnpack = "Unpack it and give the model that is inside.";
+constexpr const char* kAsText = "Save it as plain text (UTF-8), or export the model again.";
+constexpr const char* kExport = "Export the model as a mesh, for example as STL or 3MF.";
+
+// Files that are met under a model's name and are something else.
+constexpr std::array<Signature, 12> kForeign = {{
+    {"\x1F\x8B", "a file compressed by gzip", kUnpack},
+    {"BZh", "a file compressed by bzip2", kUnpack},
+    {"\xFD"
+     "7zXZ",
+     "a file compressed by xz", kUnpack},
+    {"\x28\xB5\x2F\xFD", "a file compressed by zstd", kUnpack},
+    {"7z\xBC\xAF", "a 7-Zip archive", kUnpack},
+    {"Rar!", "a RAR archive", kUnpack},
+    {"\xFF\xFE", "text in UTF-16", kAsText},
+    {"\xFE\xFF", "text in UTF-16", kAsText},
+    {"ISO-10303-21", "a STEP file", kExport},
+    {"glTF", "a glTF file", kExport},
+    {"BLENDER", "a Blender file", kExport},
+    {"%PDF", "a PDF document", kExport},
+}};
+
+// Text in UTF-16 may come without its mark: every other byte of ASCII is then zero.
+bool is_bare_utf16(std::string_view bytes) {
+  constexpr std::size_t kLooked = 64;
+  if (bytes.size() < kLooked) return false;
+  for (const std::size_t zero : {0, 1}) {
+    bool all = true;
+    for (std::size_t i = 0; i < kLooked; i += 2)
+      all = all && bytes[i + zero] == 0 && bytes[i + 1 - zero] != 0;
+    if (all) return true;
+  }
+  return false;
+}
+
+[[noreturn]] void refuse_foreign(const char* what, const char* hint) {
+  throw Error(Fault::kBadInput, std::string("The model file is ") + what + ", not a mesh", hint);
+}
+
+void refuse_foreign_files(std::string_view bytes) {
+  if (has_binary_stl_length(bytes)) return;  // its header may hold anything
+  for (const Signature& signature : kForeign)
+    if (bytes.starts_with(signature.bytes)) refuse_foreign(signature.what, signature.hint);
+  if (is_bare_utf16(bytes)) refuse_foreign("text in UTF-16", kAsText);
 }
 
 // Empty where neither content nor extension tell.
@@ -79,6 +134,9 @@ ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
   if (bytes.empty())
     throw Error(Fault::kBadInput, "The model file is empty",
                 "Wait until it is written, or export the model again.");
+  refuse_foreign_files(bytes);
+  if (bytes.starts_with(kUtf8Mark) && !has_binary_stl_length(bytes))
+    bytes.remove_prefix(kUtf8Mark.size());
   ModelFile file;
   file.format = format_of(bytes, lower_case(extension));
   if (file.format == "stl") file.soup = read_stl(bytes, progress);

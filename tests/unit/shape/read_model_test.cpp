@@ -102,6 +102,50 @@ TEST(ReadModel, ObjKnowsNegativeIndicesPolygonsAndContinuedLines) {
   expect_bad_input(square + "f 1 2 x\n", "obj");
 }
 
+TEST(ReadModel, ObjLinesGoOnAfterABackslash) {
+  const std::string rest = "v 0 1 0\nv 0 0 1\n";
+  for (const char* text : {"v 0 0 0\nv 1 \\\n 0 0\n", "v 0 0 0\nv 1 0\\\n 0\n",
+                           "v 0 0 \\\r\n0\r\nv \\  \n1 \\\n0 0 # end\n"})
+    for (const char* faces : {"f 1 3 2\\\n 4\n", "f 1\\\n 3 2 4 # a face\n", "f 1 3 2 4\\"})
+      EXPECT_EQ(read_model_bytes(text + rest + faces, "obj", Progress()).soup.triangles.size(), 2u)
+          << text << faces;
+}
+
+TEST(ReadModel, PassesOverAByteOrderMark) {
+  const TriangleSoup cube = fixtures::cube(10);
+  const std::string mark = "\xEF\xBB\xBF";
+  for (const std::string& text : {written::ascii_stl(cube, "x"), written::obj(cube)}) {
+    const bool is_obj = text[0] == '#';
+    EXPECT_EQ(
+        read_model_bytes(mark + text, is_obj ? "obj" : "stl", Progress()).soup.triangles.size(),
+        12u);
+  }
+  EXPECT_EQ(read_model_bytes(mark + "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "stl", Progress())
+                .format,
+            "off");
+}
+
+TEST(ReadModel, NamesWhatIsNoMesh) {
+  const std::string text = written::ascii_stl(fixtures::cube(10), "x");
+  std::string wide;
+  for (const char c : text) (wide += c) += '\0';
+  const auto told = [](const std::string& bytes) -> std::string {
+    try {
+      read_model_bytes(bytes, "stl", Progress());
+    } catch (const Error& error) {
+      EXPECT_EQ(error.fault(), Fault::kBadInput);
+      return error.what();
+    }
+    return "";
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(told("\x1F\x8B" + text), HasSubstr("gzip"));
+  EXPECT_THAT(told(wide), HasSubstr("UTF-16"));
+  EXPECT_THAT(told("\xFF\xFE" + wide), HasSubstr("UTF-16"));
+  EXPECT_THAT(told("ISO-10303-21;\n"), HasSubstr("STEP"));
+  EXPECT_THAT(told(written::zipped({{"cube.stl", text}})), HasSubstr("ZIP archive"));
+}
+
 TEST(ReadModel, ConcavePolygonsAreCutWithoutFolding) {
   // An L: a fan from its first corner would leave the polygon.
   const std::string text = "v 0 2 0\nv 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nf 4 5 6 1 2 3\n";
