@@ -33,6 +33,24 @@ void list(const Arguments& arguments) {
   print_table(rows);
 }
 
+double gib(double bytes) { return bytes / (1 << 30); }
+
+// What somebody should know of the disk before it is full.
+void tell_storage(const Arguments& arguments) {
+  const json storage = ask(arguments.daemon, {{"verb", "storage"}});
+  if (storage.value("low", false))
+    fmt::print(stderr,
+               "The disk of the daemon's state folder has only {:.1f} GiB left: make room, or "
+               "delete what is not needed (packmerger jobs delete ID).\n",
+               gib(storage.value("free_bytes", 0.0)));
+  if (const json announced = storage.value("announced", json()); announced.is_object())
+    fmt::print(stderr,
+               "From {} on the folders of {} ended jobs are deleted (keep_days = {}, keep_jobs = "
+               "{}); set these to 0 to keep them all.\n",
+               time_text(announced.at("from_s")), announced.value("jobs", 0),
+               storage.value("keep_days", 0), storage.value("keep_jobs", 0));
+}
+
 void print_line(const char* name, const std::string& text) {
   if (!text.empty()) fmt::print("{:<11} {}\n", name, text);
 }
@@ -154,6 +172,8 @@ void show(const Arguments& arguments) {
   print_line("received", time_text(job.value("received_s", json())));
   print_line("ended", time_text(job.value("ended_s", json())));
   print_line("folder", text_of(job, "folder"));
+  if (const json deleted = job.value("deleted_s", json()); deleted.is_number())
+    print_line("deleted", time_text(deleted));
   print_tray_files(job);
   print_line("profile", text_of(job, "profile"));
   if (const json seed = job.value("seed", json()); seed.is_number())
@@ -189,9 +209,14 @@ void add_jobs(CLI::App& program) {
   list_all->add_option("--limit", arguments->limit, "how many of those that have ended")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  list_all->add_option("--before", arguments->before, "only jobs that ended before the one of this number")
+  list_all
+      ->add_option("--before", arguments->before,
+                   "only jobs that ended before the one of this number")
       ->check(CLI::PositiveNumber);
-  list_all->callback([arguments] { list(*arguments); });
+  list_all->callback([arguments] {
+    list(*arguments);
+    tell_storage(*arguments);
+  });
   const auto with_id = [&](CLI::App* one) {
     one->add_option("ID", arguments->id, "the job's number")
         ->required()
@@ -203,7 +228,9 @@ void add_jobs(CLI::App& program) {
        {std::pair{"approve", "Lets a job be printed; also ends a hold"},
         std::pair{"hold", "Keeps a job from being printed until it is approved"},
         std::pair{"cancel", "Ends a job; a print is stopped in the printer's own way"},
-        std::pair{"again", "Makes a new job from one that has ended"}})
+        std::pair{"again", "Makes a new job from one that has ended"},
+        std::pair{"delete",
+                  "Deletes the folder of a job that has ended; what is known of it stays"}})
     with_id(action(name, help))->callback([arguments, name = std::string(name)] {
       change(*arguments, name);
     });

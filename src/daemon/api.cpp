@@ -108,7 +108,9 @@ json stop_printer(Foreman& foreman, const json& request) {
 
 // What a page shows, in one answer.
 json whole_state(Foreman& foreman, const json& request) {
-  return {{"jobs", list_jobs(foreman, request)}, {"printers", list_printers(foreman, request)}};
+  return {{"jobs", list_jobs(foreman, request)},
+          {"printers", list_printers(foreman, request)},
+          {"storage", storage_view(foreman)}};
 }
 
 const std::map<std::string, Verb, std::less<>>& verbs() {
@@ -119,7 +121,9 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
       {"jobs.hold", change_job<&Foreman::hold>},
       {"jobs.cancel", change_job<&Foreman::cancel>},
       {"jobs.again", change_job<&Foreman::again>},
+      {"jobs.delete", change_job<&Foreman::remove>},
       {"printers.list", list_printers},
+      {"storage", [](Foreman& foreman, const json&) { return storage_view(foreman); }},
       {"state", whole_state},
       {"printers.clear", clear_printer},
       {"printers.pause", pause_printer<true>},
@@ -209,8 +213,7 @@ Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
   const auto name = request.find("verb");
   if (name == request.end() || !name->is_string()) not_understood("The request has no verb");
   const auto key_verb = key_verbs().find(name->get<std::string>());
-  if (key_verb != key_verbs().end())
-    return {key_verb->second(foreman.config().web, keys, request)};
+  if (key_verb != key_verbs().end()) return {key_verb->second(foreman.config().web, keys, request)};
   const auto verb = verbs().find(name->get<std::string>());
   if (verb == verbs().end()) not_understood("The request's verb is unknown");
   const auto starter = starters().find(verb->first);

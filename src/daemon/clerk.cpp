@@ -71,6 +71,17 @@ void put_away(const FileOrder& order) {
   write_file_whole(order.note, order.note_text);
 }
 
+// Each under another name first, so that what is left where this is cut short is no job's folder.
+void remove(const DeleteOrder& order) {
+  for (const fs::path& folder : order.folders) {
+    fs::path gone = folder;
+    gone += ".deleted";
+    fs::remove_all(gone);
+    if (fs::exists(folder)) fs::rename(folder, gone);
+    fs::remove_all(gone);
+  }
+}
+
 std::optional<Failure> failure_of(const std::function<void()>& work) {
   try {
     work();
@@ -101,6 +112,10 @@ Placed place(const PlaceOrder& order) {
   Placed placed{order.job, {}, {}};
   placed.failure = failure_of([&] { placed.to = free_path(order.folder, order.name); });
   return placed;
+}
+
+Deleted clear_away(const DeleteOrder& order) {
+  return {order.jobs, failure_of([&] { remove(order); })};
 }
 
 Filed file(const FileOrder& order) {

@@ -9,6 +9,7 @@ namespace packmerger {
 Claimed claim(const ClaimOrder& order);
 Fetched fetch(const FetchOrder& order);
 Placed place(const PlaceOrder& order);
+Deleted clear_away(const DeleteOrder& order);
 Filed file(const FileOrder& order);
 
 }  // namespace packmerger

@@ -95,6 +95,8 @@ struct DaemonConfig {
   WebConfig web;
   std::vector<WebhookSettings> webhooks;
   MqttSettings mqtt;
+  int keep_days = 90;                   // the folder of a job that ended; 0: for ever
+  int keep_jobs = 1000;                 // of those that ended last; 0: all
   double retry_s = 30;                  // between attempts to reach a printer, or to file a model
   std::vector<PrinterConfig> printers;  // by name
 

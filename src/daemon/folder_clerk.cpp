@@ -39,6 +39,7 @@ void FolderClerk::carry_out(const ClerkOrder& order) {
   if (const auto* distant = std::get_if<FetchOrder>(&order)) events_.push(fetch_found(*distant));
   if (const auto* ended = std::get_if<PlaceOrder>(&order)) events_.push(place(*ended));
   if (const auto* placed = std::get_if<FileOrder>(&order)) events_.push(file(*placed));
+  if (const auto* old = std::get_if<DeleteOrder>(&order)) events_.push(clear_away(*old));
 }
 
 void FolderClerk::watch(const WatchOrder& order) {

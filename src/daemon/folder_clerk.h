@@ -1,6 +1,6 @@
 // The clerk of one folder: looks for files that arrive there, and takes, copies and files those of
-// the jobs that came from it. He alone touches the folder, so that where its disk hangs nobody
-// waits but who wants something of it.
+// the jobs that came from it; that of the job folders deletes old ones. He alone touches the
+// folder, so that where its disk hangs nobody waits but who wants something of it.
 #pragma once
 
 #include <filesystem>

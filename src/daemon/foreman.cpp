@@ -28,7 +28,11 @@ double wall_clock_s() {
 }
 
 Foreman::Foreman(const DaemonConfig& config, JobStore& store, Crew& crew, Log log)
-    : config_(config), store_(store), crew_(crew), log_(std::move(log)) {}
+    : config_(config),
+      store_(store),
+      crew_(crew),
+      log_(std::move(log)),
+      cleaner_(config, store, crew.folders[config.state / "jobs"].orders, log_) {}
 
 fs::path Foreman::job_path(std::int64_t id) const {
   return config_.state / "jobs" / std::to_string(id);
@@ -153,6 +157,7 @@ void Foreman::advance(double now_s) {
   for (const std::int64_t id : jobs)
     if (const auto job = open.find(id); job != open.end()) try_for(id, [&] { step(job->second); });
   drop_idle_live_jobs();
+  if (!stopping_) cleaner_.serve(now_s);
 }
 
 // Thousands may wait to be prepared, and this is asked of each at every turn of the loop.

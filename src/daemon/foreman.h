@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/choose_printer.h"
+#include "daemon/cleaner.h"
 #include "daemon/config.h"
 #include "daemon/folder_clerk.h"
 #include "daemon/messages.h"
@@ -26,8 +27,9 @@ double wall_clock_s();
 struct Crew {
   Queue<PrepareOrder> worker;
   Queue<PrepareOrder> checker;
-  std::map<std::filesystem::path, ClerkDesk> folders;  // watched ones, and those jobs came from
-  std::map<std::string, Queue<SendOrder>> senders;     // by printer
+  std::map<std::filesystem::path, ClerkDesk>
+      folders;  // watched ones, those jobs came from, and that of the jobs
+  std::map<std::string, Queue<SendOrder>> senders;  // by printer
 
   explicit Crew(const DaemonConfig& config) {
     for (const PrinterConfig& printer : config.printers) senders[printer.name];
@@ -87,6 +89,7 @@ class Foreman {
   // A new job from an ended one: its stored program, which counts as approved where that job was,
   // or its filed model, prepared anew.
   JobRecord again(std::int64_t id);
+  JobRecord remove(std::int64_t id);  // the folder of one that ended; it stays in the history
   PrinterRecord clear(const std::string& printer);
   // Pauses the print that runs there and lets no other start; or the contrary.
   PrinterRecord pause(const std::string& printer, bool paused);
@@ -97,6 +100,7 @@ class Foreman {
 
   const DaemonConfig& config() const { return config_; }
   const JobStore& store() const { return store_; }
+  const Cleaner& cleaner() const { return cleaner_; }
   const LiveJob* live(std::int64_t id) const;
   // The jobs with the workers.
   const std::map<std::int64_t, Preparer>& preparing() const { return preparing_; }
@@ -162,6 +166,7 @@ class Foreman {
   void on(const Fetched& event);
   void on(const Placed& event);
   void on(const Filed& event);
+  void on(const Deleted& event) { cleaner_.on(event); }
   void on(const SendProgress& event);
   void on(const SendEnded& event);
   void on(const DevicesSeen& event);
@@ -175,6 +180,7 @@ class Foreman {
 
   JobRecord print_again(const JobRecord& old);
   JobRecord prepare_again(const JobRecord& old);
+  JobRecord with_file(const JobRecord& old) const;
 
   double retry_at(int failures) const;
   void drop_idle_live_jobs();
@@ -200,6 +206,7 @@ class Foreman {
   JobStore& store_;
   Crew& crew_;
   Log log_;
+  Cleaner cleaner_;
   std::map<std::int64_t, LiveJob> live_;
   std::map<std::int64_t, Preparer> preparing_;          // the jobs with the workers, one each
   std::map<std::string, std::int64_t> sending_;         // the job with each printer's sender

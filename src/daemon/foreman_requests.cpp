@@ -109,7 +109,8 @@ JobRecord Foreman::cancel(std::int64_t id) {
 
 bool Foreman::has_program(const JobRecord& ended) const {
   std::error_code ignored;
-  return ended.trays > 0 && fs::exists(fs::path(ended.folder) / "job.json", ignored);
+  return ended.trays > 0 && !cleaner_.is_gone(ended) &&
+         fs::exists(fs::path(ended.folder) / "job.json", ignored);
 }
 
 JobRecord Foreman::again_of(const JobRecord& ended) const {
@@ -136,12 +137,25 @@ JobRecord Foreman::again(std::int64_t id) {
     senseless(old, " and has not ended", "Wait for its end, or cancel it first.");
   get_printer(old.printer);
   if (has_program(old)) return print_again(old);
-  if (!old.filing_done)  // whether the file is still there, its clerk finds out
-    throw Error(
-        Fault::kNoInput,
-        "Neither the program nor the model of job " + std::to_string(id) + " is there any more",
-        "Drop the model into the watched folder again.");
   return prepare_again(old);
+}
+
+// The job whose file lies below done/ or failed/: one that printed another's program has none.
+JobRecord Foreman::with_file(const JobRecord& old) const {
+  JobRecord job = old;
+  while (job.filed.empty() && job.again_of != 0) job = get(job.again_of);
+  if (job.filing_done) return job;  // whether it is still there, its clerk finds out
+  throw Error(
+      Fault::kNoInput,
+      "Neither the program nor the model of job " + std::to_string(old.id) + " is there any more",
+      "Drop the model into the watched folder again.");
+}
+
+JobRecord Foreman::remove(std::int64_t id) {
+  const JobRecord job = get(id);
+  cleaner_.remove(job);
+  say(job, "its folder is deleted");
+  return job;
 }
 
 // Recorded as ready first: a daemon that dies here leaves a job that asks.
@@ -159,14 +173,15 @@ JobRecord Foreman::print_again(const JobRecord& old) {
 }
 
 JobRecord Foreman::prepare_again(const JobRecord& old) {
+  const JobRecord file = with_file(old);
   JobRecord job = like(old);
-  job.origin = old.origin;
+  job.origin = file.origin;
   job.by_copy = true;
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job, "the file of job " + std::to_string(old.id) + " again");
   live_[job.id].with_clerk = true;
-  clerk_of(job).push(FetchOrder{job.id, old.filed, job.input, true, true});
+  clerk_of(job).push(FetchOrder{job.id, file.filed, job.input, true, true});
   say(job, "job " + std::to_string(old.id) + " again");
   return job;
 }

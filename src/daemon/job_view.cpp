@@ -187,7 +187,8 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"reason", job.reason},
       {"hint", job.hint},
       {"told", job.told_total == 0 ? json() : json{{"done", job.told}, {"total", job.told_total}}},
-      {"folder", job.trays > 0 ? job.folder : ""},
+      {"folder", job.trays > 0 && !foreman.cleaner().is_gone(job) ? job.folder : ""},
+      {"deleted_s", or_null(job.deleted_s)},
       {"filed", job.filing_done ? job.filed : ""},
       {"again_of", or_null(job.again_of)},
       {"received_s", or_null(job.received_s)},
@@ -227,6 +228,18 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"print", print_view(foreman.live(sending), unit_of(&printer))}};
 }
 
+json storage_view(const Foreman& foreman) {
+  const std::optional<Room>& room = foreman.cleaner().room();
+  const std::optional<Announced>& announced = foreman.cleaner().announced();
+  const bool announces = announced && announced->jobs > 0;
+  return {{"free_bytes", room ? json(room->free_bytes) : json()},
+          {"low", room && room->is_low()},
+          {"keep_days", foreman.config().keep_days},
+          {"keep_jobs", foreman.config().keep_jobs},
+          {"announced",
+           announces ? json{{"from_s", announced->from_s}, {"jobs", announced->jobs}} : json()}};
+}
+
 json start_view(const JobRecord& job) {
   return {{"job", job.id},
           {"name", job.name},
@@ -248,6 +261,9 @@ std::string daemon_status(const Foreman& foreman) {
   for (const PrinterConfig& printer : printers)
     if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
       text += fmt::format("; job {} is at {}", job, printer.name);
+  if (const std::optional<Room>& room = foreman.cleaner().room(); room && room->is_low())
+    text += fmt::format("; only {:.1f} GiB free",
+                        static_cast<double>(room->free_bytes) / (std::uint64_t{1} << 30));
   return text;
 }
 

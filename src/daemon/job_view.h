@@ -14,6 +14,8 @@ namespace packmerger {
 nlohmann::json job_view(const Foreman& foreman, const JobRecord& job);
 nlohmann::json job_view_with_history(const Foreman& foreman, const JobRecord& job);
 nlohmann::json printer_view(const Foreman& foreman, const PrinterConfig& printer);
+// The disk of the state folder, and which jobs' folders are deleted.
+nlohmann::json storage_view(const Foreman& foreman);
 // A print that an action starts at once; docs/DAEMON.md names the keys.
 nlohmann::json start_view(const JobRecord& job);
 

@@ -79,7 +79,13 @@ struct FileOrder {
   std::filesystem::path note;
   std::string note_text;
 };
-using ClerkOrder = std::variant<WatchOrder, ClaimOrder, FetchOrder, PlaceOrder, FileOrder>;
+// Deletes folders with all that is in them; those that are not there are no failure.
+struct DeleteOrder {
+  std::vector<std::int64_t> jobs;
+  std::vector<std::filesystem::path> folders;
+};
+using ClerkOrder =
+    std::variant<WatchOrder, ClaimOrder, FetchOrder, PlaceOrder, FileOrder, DeleteOrder>;
 
 // To a printer's sender.
 struct SendOrder {
@@ -175,6 +181,10 @@ struct Filed {
   std::int64_t job = 0;
   std::optional<Failure> failure;
 };
+struct Deleted {  // all of an order, or with a failure not all
+  std::vector<std::int64_t> jobs;
+  std::optional<Failure> failure;
+};
 struct SendProgress {
   std::int64_t job = 0;
   PrintReport report;
@@ -193,8 +203,8 @@ struct DevicesSeen {               // whenever something was connected or went
   std::optional<Devices> devices;  // nothing: the system does not tell, and why
   std::optional<Failure> failure;
 };
-using Event =
-    std::variant<PrepareProgress, Hashed, Compared, Prepared, PrepareFailed, Arrived, FileIgnored,
-                 FolderTold, Claimed, Fetched, Placed, Filed, SendProgress, SendEnded, DevicesSeen>;
+using Event = std::variant<PrepareProgress, Hashed, Compared, Prepared, PrepareFailed, Arrived,
+                           FileIgnored, FolderTold, Claimed, Fetched, Placed, Filed, Deleted,
+                           SendProgress, SendEnded, DevicesSeen>;
 
 }  // namespace packmerger

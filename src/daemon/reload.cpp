@@ -73,6 +73,8 @@ void Reload::read() {
     DaemonConfig wanted = read_();
     if (const auto keys = needing_restart(config_, wanted); !keys.empty())
       log_("warning: a change of " + joined(keys) + " counts when the daemon is started again");
+    config_.keep_days = wanted.keep_days;
+    config_.keep_jobs = wanted.keep_jobs;
     config_.prepare = wanted.prepare;
     config_.watch = wanted.watch;
     config_.web = wanted.web;

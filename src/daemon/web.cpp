@@ -172,7 +172,11 @@ HttpReply Web::file_of_job(const std::string& id, const std::string& name) {
   const HttpReply shown =
       desk_.ask(json{{"verb", "jobs.show"}, {"id", number(id).value_or(0)}}.dump());
   if (shown.status != 200) return shown;
-  const std::string folder = json::parse(shown.body).value("folder", "");
+  const json job = json::parse(shown.body);
+  const std::string folder = job.value("folder", "");
+  if (folder.empty() && job.value("trays", 0) > 0)
+    return web_error(404, Fault::kNoInput, "The job's folder was deleted",
+                     "Print it again: it is then prepared anew.");
   if (folder.empty())
     return web_error(404, Fault::kNoInput, "The job is not prepared yet",
                      "Wait until it is ready.");

@@ -80,10 +80,17 @@ CREATE INDEX job_ended ON job (ended_s) WHERE ended_s > 0;
 PRAGMA user_version = 8;
 )";
 
+constexpr const char* kAddDeleting = R"(
+ALTER TABLE job ADD COLUMN deleted_s REAL NOT NULL DEFAULT 0;
+CREATE INDEX job_folder ON job (folder);
+CREATE TABLE memory (name TEXT PRIMARY KEY, value REAL NOT NULL) WITHOUT ROWID;
+PRAGMA user_version = 9;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 8> kSteps = {kMakeTables,   kAddTold,    kAddPrograms,
-                                               kAddSettings,  kAddTimes,   kAddChoice,
-                                               kAddTrayFiles, kAddApproval};
+constexpr std::array<const char*, 9> kSteps = {kMakeTables,   kAddTold,     kAddPrograms,
+                                               kAddSettings,  kAddTimes,    kAddChoice,
+                                               kAddTrayFiles, kAddApproval, kAddDeleting};
 
 }  // namespace
 

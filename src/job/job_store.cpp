@@ -42,7 +42,7 @@ constexpr std::string_view kColumns =
     "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
     "told, told_total, variant, at_once, with_settings, predicted_s, "
     "predicted_by, printed_s, paused_s, chosen_by, choice, "
-    "profile, seed, tray_files, approved, doubt";
+    "profile, seed, tray_files, approved, doubt, deleted_s";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -73,7 +73,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
   statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
   statement.bind(job.profile).bind(job.seed).bind(job.tray_files);
-  statement.bind(flag(job.approved)).bind(job.doubt);
+  statement.bind(flag(job.approved)).bind(job.doubt).bind(job.deleted_s);
 }
 
 JobState read_state(Statement& row) {
@@ -124,6 +124,7 @@ JobRecord read_job(Statement& row) {
   job.tray_files = row.text();
   job.approved = row.flag();
   job.doubt = row.text();
+  job.deleted_s = row.real();
   return job;
 }
 
@@ -146,6 +147,12 @@ std::int64_t newest_alike(const Connection& connection, const JobRecord& job,
   row.bind(job.sha256).bind(job.id);
   return row.step() ? row.integer() : 0;
 }
+
+// Of two jobs in one folder neither is deleted before the other.
+constexpr std::string_view kDeletable =
+    "WHERE ended_s > 0 AND ended_s <= ? AND filing_done = 1 AND deleted_s = 0 AND NOT EXISTS "
+    "(SELECT 1 FROM job AS other WHERE other.folder = job.folder AND other.folder <> '' AND "
+    "(other.ended_s = 0 OR other.ended_s > ? OR other.filing_done = 0))";
 
 void write_printer(const Connection& connection, const PrinterRecord& printer) {
   Statement statement(connection,
@@ -248,6 +255,51 @@ std::vector<JobRecord> JobStore::newest_ended(int limit, std::int64_t before) co
   if (is_ended) rows.bind(last->ended_s);
   rows.bind(before).bind(std::int64_t{limit});
   return read_jobs(rows);
+}
+
+std::vector<JobRecord> JobStore::deletable(double until_s, int limit) const {
+  Statement rows(database_->connection,
+                 select(std::string(kDeletable) + " ORDER BY ended_s, id LIMIT ?"));
+  rows.bind(until_s).bind(until_s).bind(std::int64_t{limit});
+  return read_jobs(rows);
+}
+
+std::int64_t JobStore::count_deletable(double until_s) const {
+  Statement row(database_->connection, "SELECT COUNT(*) FROM job " + std::string(kDeletable));
+  row.bind(until_s).bind(until_s);
+  return row.step() ? row.integer() : 0;
+}
+
+double JobStore::ended_beyond(int kept) const {
+  Statement row(database_->connection,
+                "SELECT ended_s FROM job WHERE ended_s > 0 AND deleted_s = 0 "
+                "ORDER BY ended_s DESC LIMIT 1 OFFSET ?");
+  row.bind(std::int64_t{kept});
+  return row.step() ? row.real() : 0;
+}
+
+std::vector<JobRecord> JobStore::sharing(const JobRecord& job) const {
+  Statement rows(database_->connection,
+                 select("WHERE id = ? OR (folder = ? AND folder <> '') ORDER BY id"));
+  rows.bind(job.id).bind(job.folder);
+  return read_jobs(rows);
+}
+
+bool JobStore::is_empty() const {
+  Statement row(database_->connection, "SELECT 1 FROM job LIMIT 1");
+  return !row.step();
+}
+
+std::optional<double> JobStore::remembered(std::string_view name) const {
+  Statement row(database_->connection, "SELECT value FROM memory WHERE name = ?");
+  return row.bind(name).step() ? std::optional(row.real()) : std::nullopt;
+}
+
+void JobStore::remember(std::string_view name, double value) {
+  Transaction transaction(database_->connection);
+  Statement statement(database_->connection, "REPLACE INTO memory (name, value) VALUES (?, ?)");
+  statement.bind(name).bind(value).finish();
+  transaction.commit();
 }
 
 std::int64_t JobStore::same_bytes(const JobRecord& job) const {

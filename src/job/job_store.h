@@ -65,6 +65,7 @@ struct JobRecord {
   double received_s = 0;  // Unix time
   double sending_s = 0;   // when the first tray began; 0: not yet
   double ended_s = 0;     // 0: not yet
+  double deleted_s = 0;   // when its folder was deleted; 0: it was not
 };
 
 struct PrinterRecord {
@@ -111,6 +112,17 @@ class JobStore {
   // that ended before that job, or, where it has not ended, have lower ids.
   std::vector<JobRecord> newest_ended(
       int limit, std::int64_t before = std::numeric_limits<std::int64_t>::max()) const;
+  // Ended and filed jobs whose folders are still there and that ended at until_s or before, with
+  // every job that shares their folder; the one that ended first comes first.
+  std::vector<JobRecord> deletable(double until_s, int limit) const;
+  std::int64_t count_deletable(double until_s) const;
+  // When the job ended that comes after the `kept` that ended last and whose folders are still
+  // there; 0: there is none.
+  double ended_beyond(int kept) const;
+  // Those that use the same job folder, this one too.
+  std::vector<JobRecord> sharing(const JobRecord& job) const;
+  // Whether there never was a job.
+  bool is_empty() const;
   // The newest other job with the same bytes for any printer; 0: none.
   std::int64_t same_bytes(const JobRecord& job) const;
   // The newest such job that came before this one; 0: none.
@@ -120,6 +132,10 @@ class JobStore {
   // this source, and paused for less than an hour.
   std::vector<FinishedPrint> finished_prints(const std::string& printer, std::string_view source,
                                              int limit) const;
+
+  // A figure that the daemon keeps over restarts, by its name; nothing: never kept.
+  std::optional<double> remembered(std::string_view name) const;
+  void remember(std::string_view name, double value);
 
   // A printer never seen before: its bed is not clear, and it is not paused.
   PrinterRecord printer(const std::string& name) const;

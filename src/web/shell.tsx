@@ -1,7 +1,7 @@
 // The frame around every view: header, what is wrong with the connection, dialogues, messages.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { mayChange } from './daemon/key';
-import { hasEnded } from './daemon/types';
+import { hasEnded, type Storage } from './daemon/types';
 import { HistoryView } from './history/history';
 import { JobPage } from './job/job_page';
 import { askForKey, HowToGetAKey, KeyDialog, KeyForm } from './key_dialog';
@@ -13,7 +13,7 @@ import { isDark, onTheme, switchTheme } from './theme';
 import { AskDialog } from './ui/ask';
 import { Icon, Mark } from './ui/icons';
 import { Notes } from './ui/notes';
-import { jobBadge } from './words';
+import { jobBadge, storageInWords } from './words';
 
 const LINK_WORDS: Record<Link['kind'], string> = {
   connecting: 'Connecting', live: 'Live', lost: 'No connection', key: 'Key needed',
@@ -66,6 +66,13 @@ function Trouble({ link }: { link: Link }) {
   );
 }
 
+// What will be lacking, or gone, unless somebody does something.
+function Disk({ storage }: { storage: Storage | null }) {
+  const text = storage === null ? '' : storageInWords(storage);
+  if (text === '') return null;
+  return <div class="banner"><Icon name="warning" /><div>{text}</div></div>;
+}
+
 function KeyPage({ link }: { link: Extract<Link, { kind: 'key' }> }) {
   return (
     <section class="card key-page">
@@ -114,6 +121,7 @@ export function Shell() {
       <Header route={route} link={known.link} />
       <main id="main" tabIndex={-1}>
         <Trouble link={known.link} />
+        <Disk storage={known.link.kind === 'key' ? null : known.storage} />
         <View route={route} known={known} />
       </main>
       <DropTargets printers={known.printers} />

@@ -1,5 +1,5 @@
 // Figures and states as people read them.
-import { hasEnded, type Job, type Printer, type Start } from './daemon/types';
+import { hasEnded, type Job, type Printer, type Start, type Storage } from './daemon/types';
 
 const rounded = (value: number, digits: number): string =>
   value.toLocaleString('en', { maximumFractionDigits: digits, minimumFractionDigits: digits });
@@ -144,6 +144,14 @@ export function startInWords({ job, name, printer, tray, trays, time_s, doubt }:
            doubt === null ? '' : `What speaks against it: ${doubt}.`].filter(Boolean).join(' '),
     yes: 'Start the print', no: 'Not yet', calm: true,
   };
+}
+
+// '' where nobody has to do anything.
+export function storageInWords({ free_bytes, low, announced, keep_days, keep_jobs }: Storage): string {
+  return [
+    low && free_bytes !== null ? `The daemon’s disk has only ${bytes(free_bytes)} left. Make room, or delete the files of jobs that are not needed.` : '',
+    announced ? `From ${when(announced.from_s)} on the files of ${count(announced.jobs, 'ended job')} are deleted (keep_days = ${keep_days}, keep_jobs = ${keep_jobs}). Set these to 0 in the settings to keep them all.` : '',
+  ].filter(Boolean).join(' ');
 }
 
 const HEATERS: Record<string, string> = { tool: 'Nozzle', bed: 'Bed', chamber: 'Chamber' };

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords } from '../../src/web/words';
+import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords } from '../../src/web/words';
 import { ownEstimate, type Job } from '../../src/web/daemon/types';
 
 const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
@@ -55,4 +55,11 @@ test('the question before a print starts names what, where, and for how long', (
   const doubtful = { ...start, tray: 2, trays: 3, time_s: null, doubt: 'packing does not pay' };
   expect(startInWords(doubtful).text).toBe(
     'Tray 2 of 3 of a.stl (job 5) starts now on ender. How long it takes is not known. What speaks against it: packing does not pay.');
+});
+
+test('a disk is spoken of only where somebody has to do something', () => {
+  const storage = { free_bytes: 3 << 28, low: false, keep_days: 90, keep_jobs: 1000, announced: null };
+  expect(storageInWords(storage)).toBe('');
+  expect(plain(storageInWords({ ...storage, low: true }))).toMatch(/^The daemon’s disk has only 768 MiB left/);
+  expect(storageInWords({ ...storage, announced: { from_s: 0, jobs: 1 } })).toMatch(/1970.* on the files of 1 ended job are deleted \(keep_days = 90/);
 });

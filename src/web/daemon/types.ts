@@ -93,6 +93,8 @@ export interface Job {
   received_s: number | null;
   sending_s: number | null;
   ended_s: number | null;
+  deleted_s: number | null;  // its folder
+  filed: string;
   history?: JobEvent[];
 }
 
@@ -113,9 +115,19 @@ export interface Printer {
   print: Print | null;
 }
 
+// The disk of the state folder, and which jobs' folders are deleted.
+export interface Storage {
+  free_bytes: number | null;
+  low: boolean;
+  keep_days: number;
+  keep_jobs: number;
+  announced: { from_s: number; jobs: number } | null;
+}
+
 export interface State {
   jobs: Job[];
   printers: Printer[];
+  storage: Storage;
 }
 
 // The print that an action starts at once.

@@ -1,6 +1,8 @@
 // The job folder's files, to be kept. The page fetches them: a plain link could not send the key.
-import { jobFile } from '../daemon/api';
-import type { Job } from '../daemon/types';
+import { changeJob, jobFile } from '../daemon/api';
+import { hasEnded, type Job } from '../daemon/types';
+import { act } from '../ui/act';
+import { ask } from '../ui/ask';
 import { Button } from '../ui/bits';
 import { complain } from '../ui/notes';
 
@@ -33,6 +35,15 @@ export function filesOf(job: Job, dialect: string): { file: string; title: strin
   return [...files, { file: 'job.json', title: 'Report, JSON' }];
 }
 
+function askToDelete(job: Job): void {
+  ask({
+    title: `Delete the files of job ${job.id}?`,
+    text: `Trays, programs and pictures of ${job.name} go. What is known of the job stays, and so does the model; printed again, it is prepared anew.`,
+    yes: 'Delete the files', no: 'Keep them',
+    act: () => act((starts) => changeJob(job.id, 'delete', starts), `The files of job ${job.id} are deleted`),
+  });
+}
+
 // The bytes that the printer is given, or was.
 function Hashes({ job }: { job: Job }) {
   if (job.tray_files === null) return <p class="hashes">SHA-256 of what is sent: not known</p>;
@@ -47,6 +58,9 @@ export function Files({ job, dialect }: { job: Job; dialect: string }) {
         {filesOf(job, dialect).map(({ file, title }) => (
           <Button key={file} icon="download" onClick={() => void save(job, file)}>{title}</Button>
         ))}
+        {hasEnded(job) ? (
+          <Button kind="danger" icon="close" label={`Delete the files of job ${job.id}`} onClick={() => askToDelete(job)}>Delete them</Button>
+        ) : null}
       </div>
       <Hashes job={job} />
     </section>

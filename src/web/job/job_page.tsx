@@ -89,6 +89,7 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
       {job.reason ? <p class="reason"><strong>{sentence(job.reason)}</strong> {job.hint}</p> : null}
       {next ? <p>{next}</p> : null}
       {cheaper ? <p>It would cost less printed {cheaper}; the table below shows by how much.</p> : null}
+      {job.deleted_s ? <p class="quiet-text">Its files were deleted {when(job.deleted_s)}{job.filed ? <>; the model lies at <code>{job.filed}</code></> : null}.</p> : null}
       {job.state === 'handed_over' ? <p>Open it in the printer’s own software.</p> : null}
       {job.printed_s ? <p class="quiet-text">It took {duration(job.printed_s)} to print{job.predicted_s ? `, ${duration(job.predicted_s)} were predicted` : ''}.</p> : null}
       <JobButtons job={job} />

@@ -64,7 +64,8 @@ TEST(History, WhatHasNotEndedIsAlwaysToldAndTheRestPageByPage) {
   const auto ids = [&](json request) {
     request["verb"] = "jobs.list";
     std::vector<std::int64_t> told;
-    for (const json& job : shop.ask(request).at("result")) told.push_back(job.at("id"));
+    const json reply = shop.ask(request);
+    for (const json& job : reply.at("result")) told.push_back(job.at("id"));
     return told;
   };
   using Ids = std::vector<std::int64_t>;

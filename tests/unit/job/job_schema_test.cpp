@@ -9,6 +9,7 @@ namespace packmerger {
 namespace {
 
 constexpr const char* kDropSinceVersion7 =
+    "DROP INDEX job_folder; ALTER TABLE job DROP COLUMN deleted_s; DROP TABLE memory;"
     "DROP INDEX job_ended; ALTER TABLE job DROP COLUMN approved; ALTER TABLE job DROP COLUMN "
     "doubt;";
 

@@ -89,6 +89,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.tray_files = "[]";
     job.approved = true;
     job.doubt = "doubt";
+    job.deleted_s = 4.5;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -118,6 +119,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.tray_files, "[]");
   EXPECT_TRUE(back.approved);
   EXPECT_EQ(back.doubt, "doubt");
+  EXPECT_EQ(back.deleted_s, 4.5);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
@@ -234,6 +236,61 @@ TEST(JobStore, OlderJobsAreReachedPageByPage) {
     for (const JobRecord& job : page) told.push_back(job.id);
   EXPECT_EQ(told, (std::vector<std::int64_t>{7, 2, 3, 1, 6, 4}));
   EXPECT_EQ(store.newest_ended(9, 5).size(), 4U) << "older than one that has not ended";
+}
+
+TEST(JobStore, KnowsWhichFoldersAreNeededNoMore) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  EXPECT_TRUE(store.is_empty());
+  const auto ended = [&](double ended_s, const char* prepared, bool filed = true) {
+    JobRecord job = sample();
+    job.folder = prepared;
+    job = store.add(job);
+    job.state = JobState::kFailed;
+    job.ended_s = ended_s;
+    job.filing_done = filed;
+    store.save(job);
+    return job;
+  };
+  ended(30, "/a");
+  const JobRecord first = ended(20, "/b");
+  ended(25, "");
+  ended(10, "/c");
+  ended(99, "/c");         // again, and later
+  ended(15, "/d", false);  // not yet filed
+  JobRecord again = first;
+  again.state = JobState::kReady;
+  again.ended_s = 0;
+  again.filing_done = false;
+  const JobRecord open = store.add(again);
+  using Ids = std::vector<std::int64_t>;
+  const auto ids = [](const std::vector<JobRecord>& jobs) {
+    Ids all;
+    for (const JobRecord& job : jobs) all.push_back(job.id);
+    return all;
+  };
+  EXPECT_EQ(ids(store.deletable(50, 9)), (Ids{3, 1}));
+  EXPECT_EQ(store.count_deletable(50), 2);
+  EXPECT_EQ(ids(store.deletable(99, 9)), (Ids{4, 3, 1, 5}));
+  EXPECT_EQ(ids(store.deletable(99, 1)), (Ids{4}));
+  EXPECT_EQ(ids(store.sharing(first)), (Ids{first.id, open.id}));
+  EXPECT_EQ(store.ended_beyond(2), 25);
+  EXPECT_EQ(store.ended_beyond(6), 0);
+  JobRecord deleted = store.find(5).value();
+  deleted.deleted_s = 100;
+  store.save(deleted, "its folder was deleted");
+  EXPECT_EQ(store.ended_beyond(2), 20);
+  EXPECT_FALSE(store.is_empty());
+}
+
+TEST(JobStore, RemembersFigures) {
+  const TemporaryFolder folder;
+  JobStore(folder.path() / "jobs.sqlite").remember("a", 1);
+  JobStore store(folder.path() / "jobs.sqlite");
+  EXPECT_EQ(store.remembered("a"), 1);
+  store.remember("a", 2);
+  EXPECT_EQ(store.remembered("a"), 2);
+  EXPECT_EQ(store.remembered("b"), std::nullopt);
 }
 
 TEST(JobStore, RecognisesTheSameBytes) {

@@ -1,0 +1,158 @@
+#include "daemon/cleaner.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+
+#include <algorithm>
+
+#include "daemon/foreman.h"
+#include "daemon/move_file.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kLookEvery_s = 30;
+constexpr double kDay_s = 86400;
+constexpr double kAnnounced_s = 7 * kDay_s;
+constexpr double kLeap_s =
+    30 * kDay_s;  // between two looks: the daemon was off, or the clock leapt
+constexpr int kAtATime = 10;
+constexpr std::uint64_t kLeastWanted = std::uint64_t{512} << 20;
+constexpr const char* kFrom = "cleaning_from_s";  // what is remembered
+constexpr const char* kLooked = "cleaning_looked_s";
+
+double gib(std::uint64_t bytes) { return static_cast<double>(bytes) / (1 << 30); }
+
+std::string day(double unix_s) {
+  return fmt::format("{:%Y-%m-%d}", fmt::localtime(static_cast<std::time_t>(unix_s)));
+}
+
+std::string title(const JobRecord& job) { return "Job " + std::to_string(job.id); }
+
+}  // namespace
+
+Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log)
+    : config_(config), store_(store), clerk_(clerk), log_(std::move(log)) {}
+
+void Cleaner::serve(double now_s) {
+  if (!deleting_.empty() || now_s < next_s_) return;
+  next_s_ = now_s + kLookEvery_s;
+  const double wall_s = wall_clock_s();
+  look_at_room();
+  announce(wall_s);
+  double until_s = announced_ ? 0 : kept_since_s(wall_s);
+  if (room_ && room_->is_short()) until_s = std::max(until_s, wall_s - kDay_s);
+  if (until_s > 0) order(store_.deletable(until_s, kAtATime + static_cast<int>(failed_.size())));
+}
+
+// An upload of the largest kind must find its place, on a small disk one of a tenth of it.
+void Cleaner::look_at_room() {
+  room_.reset();
+  struct statvfs disk {};
+  if (::statvfs(config_.state.c_str(), &disk) != 0) return;
+  const std::uint64_t size = std::uint64_t{disk.f_blocks} * disk.f_frsize;
+  room_ = Room{
+      std::uint64_t{disk.f_bavail} * disk.f_frsize,
+      std::max(kLeastWanted, std::min(kLeastWanted + config_.web.most_upload_bytes, size / 10))};
+  if (room_->is_low() && !told_low_)
+    log_(fmt::format("the disk with {} has only {:.1f} GiB left{}", config_.state.string(),
+                     gib(room_->free_bytes),
+                     room_->is_short() ? ": the folders of the oldest jobs are deleted" : ""));
+  told_low_ = room_->is_low();
+}
+
+// Whoever comes from a version that kept everything, was away for a month, or whose clock leapt,
+// has seven days to say otherwise.
+void Cleaner::announce(double wall_s) {
+  const double looked_s = store_.remembered(kLooked).value_or(0);
+  double from_s = store_.remembered(kFrom).value_or(0);
+  const bool is_new = looked_s == 0 && store_.is_empty();
+  const bool leapt = !is_new && wall_s - looked_s > kLeap_s;
+  if (leapt || from_s > wall_s + kAnnounced_s) {
+    from_s = wall_s + kAnnounced_s;
+    store_.remember(kFrom, from_s);
+    told_announced_ = false;
+  }
+  if (wall_s < looked_s || wall_s - looked_s > kDay_s) store_.remember(kLooked, wall_s);
+  announced_.reset();
+  if (wall_s >= from_s) return;
+  const Announced announced{from_s, store_.count_deletable(kept_since_s(wall_s))};
+  announced_ = announced;
+  if (announced.jobs > 0 && !told_announced_)
+    log_(fmt::format(
+        "from {} on the folders of {} ended jobs are deleted (keep_days = {}, keep_jobs = {}); set "
+        "these to 0 to keep them all",
+        day(from_s), announced.jobs, config_.keep_days, config_.keep_jobs));
+  told_announced_ = told_announced_ || announced.jobs > 0;
+}
+
+// Jobs that ended then or before are not kept; 0: all are.
+double Cleaner::kept_since_s(double wall_s) const {
+  double until_s = 0;
+  if (config_.keep_days > 0) until_s = wall_s - config_.keep_days * kDay_s;
+  if (config_.keep_jobs > 0) until_s = std::max(until_s, store_.ended_beyond(config_.keep_jobs));
+  return std::max(until_s, 0.0);
+}
+
+void Cleaner::remove(const JobRecord& job) {
+  if (!has_ended(job.state))
+    throw Error(Fault::kUsage, title(job) + " has not ended", "Cancel it first.");
+  if (is_gone(job))
+    throw Error(Fault::kUsage, "The folder of job " + std::to_string(job.id) + " is deleted",
+                "What is known of the job is kept.");
+  const std::vector<JobRecord> sharing = store_.sharing(job);
+  for (const JobRecord& other : sharing)
+    if (!has_ended(other.state))
+      throw Error(
+          Fault::kBusy,
+          "Job " + std::to_string(other.id) + " needs the folder of job " + std::to_string(job.id),
+          "Wait for its end, or cancel it first.");
+  for (const JobRecord& other : sharing)
+    if (!other.filing_done)
+      throw Error(Fault::kBusy, title(other) + " is just being filed", "Try again in a moment.");
+  failed_.erase(job.id);
+  order({job});
+}
+
+void Cleaner::order(const std::vector<JobRecord>& jobs) {
+  DeleteOrder wanted;
+  for (const JobRecord& job : jobs) {
+    if (failed_.contains(job.id)) continue;
+    for (const JobRecord& other : store_.sharing(job)) {
+      if (!deleting_.try_emplace(other.id, other.folder).second) continue;
+      wanted.jobs.push_back(other.id);
+      wanted.folders.push_back(config_.state / "jobs" / std::to_string(other.id));
+    }
+  }
+  if (!wanted.jobs.empty()) clerk_.push(std::move(wanted));
+}
+
+void Cleaner::on(const Deleted& event) {
+  for (const std::int64_t id : event.jobs) {
+    const std::optional<JobRecord> found = store_.find(id);
+    if (event.failure) {
+      failed_.insert(id);
+    } else if (found) {
+      JobRecord job = *found;
+      job.deleted_s = wall_clock_s();
+      store_.save(job, "its folder was deleted");
+    }
+    deleting_.erase(id);
+  }
+  if (event.failure)
+    log_("not deleted: " + printable(event.failure->what) + ". " + event.failure->hint);
+  else
+    log_(fmt::format("the folders of {} ended jobs were deleted, {} the first", event.jobs.size(),
+                     event.jobs.front()));
+  next_s_ = 0;
+}
+
+bool Cleaner::is_gone(const JobRecord& job) const {
+  return job.deleted_s > 0 || deleting_.contains(job.id) ||
+         std::any_of(deleting_.begin(), deleting_.end(), [&](const auto& one) {
+           return !job.folder.empty() && one.second == job.folder;
+         });
+}
+
+}  // namespace packmerger

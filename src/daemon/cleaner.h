@@ -1,0 +1,76 @@
+// Deletes the folders of jobs that ended: those that keep_days and keep_jobs no longer cover, and
+// the oldest ones where the disk gets full. What is known of a job stays, and so does its model
+// below done/ or failed/. On the loop's thread; the clerk does what takes time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/messages.h"
+#include "job/job_store.h"
+
+namespace packmerger {
+
+// Of the disk with the state folder.
+struct Room {
+  std::uint64_t free_bytes = 0;
+  std::uint64_t wanted_bytes = 0;  // with less, old jobs are deleted
+
+  bool is_short() const { return free_bytes < wanted_bytes; }
+  bool is_low() const { return free_bytes < 2 * wanted_bytes; }  // people are warned
+};
+
+// What is deleted once people had time to object.
+struct Announced {
+  double from_s = 0;  // Unix time
+  std::int64_t jobs = 0;
+};
+
+class Cleaner {
+ public:
+  using Log = std::function<void(const std::string&)>;
+
+  // Everything must outlive it.
+  Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log);
+
+  // Looks from time to time. now_s: a clock that never goes back.
+  void serve(double now_s);
+
+  // Deletes the folder of a job that has ended, whatever the settings keep. Throws Error{kUsage}
+  // where it has not ended or was deleted, Error{kBusy} where its folder is still needed.
+  void remove(const JobRecord& job);
+
+  void on(const Deleted& event);
+
+  // Whether the job's folder is there no more, or not for long.
+  bool is_gone(const JobRecord& job) const;
+
+  const std::optional<Room>& room() const { return room_; }  // nothing: the system does not tell
+  const std::optional<Announced>& announced() const { return announced_; }
+
+ private:
+  void look_at_room();
+  void announce(double wall_s);
+  double kept_since_s(double wall_s) const;
+  void order(const std::vector<JobRecord>& jobs);
+
+  const DaemonConfig& config_;
+  JobStore& store_;
+  Queue<ClerkOrder>& clerk_;
+  Log log_;
+  std::optional<Room> room_;
+  std::optional<Announced> announced_;
+  std::map<std::int64_t, std::string> deleting_;  // with the clerk; the folder of each
+  std::set<std::int64_t> failed_;                 // until the next start
+  double next_s_ = 0;
+  bool told_low_ = false;
+  bool told_announced_ = false;
+};
+
+}  // namespace packmerger

@@ -1,0 +1,141 @@
+// Which jobs' folders are deleted, when, and what stays.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/daemon/workshop.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kDay_s = 86400;
+
+class Cleaning : public testing::Test {
+ protected:
+  // A job that was printed so many days ago.
+  std::int64_t printed(double days_ago) {
+    shop_.drop("sim", "a.stl");
+    const PrepareOrder order = shop_.prepare_order().value();
+    shop_.prepare(order);
+    shop_.send_order("sim");
+    SendEnded end{order.job, SendOutcome::kDone, {}, ""};
+    end.printed_s = 71;
+    shop_.tell(end);
+    shop_.run_the_clerk();
+    JobRecord job = shop_.job(order.job);
+    job.ended_s -= days_ago * kDay_s;
+    shop_.store_->save(job);
+    return job.id;
+  }
+  void wait() {
+    shop_.now_s_ += 60;
+    shop_.foreman_->advance(shop_.now_s_);
+    shop_.run_the_clerk();
+  }
+  fs::path folder(std::int64_t id) { return shop_.config_.state / "jobs" / std::to_string(id); }
+  bool is_there(std::int64_t id) { return fs::exists(folder(id)); }
+  json storage() { return shop_.ask({{"verb", "storage"}}).at("result"); }
+  json remove(std::int64_t id) { return shop_.ask({{"verb", "jobs.delete"}, {"id", id}}); }
+
+  Workshop shop_;
+};
+
+TEST_F(Cleaning, TakesFoldersOfOldJobsAndNothingThatIsKnownOfThem) {
+  const std::int64_t old = printed(100);
+  const std::int64_t young = printed(80);
+  wait();
+  EXPECT_FALSE(is_there(old));
+  EXPECT_TRUE(is_there(young));
+  const json job = shop_.view(old);
+  EXPECT_EQ(job.at("state"), "done");
+  EXPECT_EQ(job.at("folder"), "");
+  EXPECT_GT(job.at("deleted_s"), 0);
+  EXPECT_EQ(job.at("printed_s"), 71);
+  EXPECT_TRUE(job.at("estimates").is_object());
+  EXPECT_EQ(job.at("history").back().at("note"), "its folder was deleted");
+  EXPECT_TRUE(fs::exists(std::string(job.at("filed")))) << "the model stays";
+  EXPECT_EQ(shop_.store_->finished_prints("sim", "slicer", 9).size(), 2U) << "what it taught";
+  EXPECT_EQ(shop_.view(young).at("deleted_s"), nullptr);
+}
+
+TEST_F(Cleaning, KeepsSoManyAndAllWhereTheSettingsSaySo) {
+  for (const double days : {4.0, 3.0, 2.0}) printed(days);
+  shop_.config_.keep_jobs = 0;
+  wait();
+  EXPECT_TRUE(is_there(1));
+  shop_.config_.keep_jobs = 2;
+  wait();
+  EXPECT_FALSE(is_there(1));
+  EXPECT_TRUE(is_there(2));
+  const std::int64_t old = printed(1000);
+  shop_.config_.keep_jobs = shop_.config_.keep_days = 0;
+  wait();
+  EXPECT_TRUE(is_there(old));
+}
+
+TEST_F(Cleaning, IsAnnouncedForAWeekAfterAnUpgradeOrALeapOfTheClock) {
+  const std::int64_t old = printed(100);
+  for (const double looked_s : {0.0, wall_clock_s() - 40 * kDay_s}) {
+    shop_.store_->remember("cleaning_looked_s", looked_s);
+    shop_.start();
+    wait();
+    EXPECT_TRUE(is_there(old));
+    EXPECT_EQ(storage().at("announced").at("jobs"), 1);
+    EXPECT_NEAR(storage().at("announced").at("from_s"), wall_clock_s() + 7 * kDay_s, 600);
+    EXPECT_THAT(shop_.log_,
+                testing::HasSubstr("the folders of 1 ended jobs are deleted (keep_days"));
+  }
+  shop_.start();
+  wait();
+  EXPECT_TRUE(is_there(old)) << "the next start does not end the week";
+  shop_.store_->remember("cleaning_from_s", wall_clock_s() - 1);
+  wait();
+  EXPECT_FALSE(is_there(old));
+  EXPECT_EQ(storage().at("announced"), nullptr);
+}
+
+TEST_F(Cleaning, AJobPrintedAgainNeedsTheFolder) {
+  const std::int64_t old = printed(100);
+  shop_.foreman_->hold(shop_.foreman_->again(old).id);
+  wait();
+  EXPECT_TRUE(is_there(old));
+  EXPECT_EQ(remove(old).at("error").at("fault"), 75) << "job 2 needs it";
+  shop_.foreman_->cancel(2);
+  EXPECT_TRUE(remove(2).at("ok"));
+  EXPECT_FALSE(shop_.ask({{"verb", "jobs.again"}, {"id", 2}}).at("ok") &&
+               shop_.job(3).state == JobState::kApproved)
+      << "it is being deleted";
+  shop_.run_the_clerk();
+  EXPECT_FALSE(is_there(old));
+  EXPECT_GT(shop_.job(old).deleted_s, 0) << "with the job that shares it";
+}
+
+TEST_F(Cleaning, ByHandAndThenPreparedAnew) {
+  const std::int64_t job = printed(0);
+  shop_.drop("sim", "b.stl");
+  EXPECT_EQ(remove(2).at("error").at("fault"), 2) << "it has not ended";
+  EXPECT_EQ(remove(9).at("error").at("fault"), 66);
+  EXPECT_TRUE(remove(job).at("ok"));
+  shop_.run_the_clerk();
+  EXPECT_FALSE(is_there(job));
+  EXPECT_EQ(remove(job).at("error").at("fault"), 2) << "it is deleted";
+  EXPECT_TRUE(shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("ok"));
+  shop_.run_the_clerk();
+  EXPECT_EQ(shop_.job(3).state, JobState::kReceived) << "from the model below done/";
+  fs::remove(shop_.job(job).filed);
+  const json gone = shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("error");
+  EXPECT_EQ(gone.at("hint"), "Drop the model into the watched folder again.");
+}
+
+TEST_F(Cleaning, GoesOnWhereADaemonDied) {
+  const std::int64_t old = printed(100);
+  fs::path half = folder(old);
+  half += ".deleted";
+  fs::rename(folder(old), half);
+  shop_.start();
+  wait();
+  EXPECT_FALSE(fs::exists(half));
+  EXPECT_GT(shop_.job(old).deleted_s, 0);
+}
+
+}  // namespace
+}  // namespace packmerger
