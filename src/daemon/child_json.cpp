@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "daemon/job_folder.h"
 #include "daemon/move_file.h"
 

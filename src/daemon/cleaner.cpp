@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/move_file.h"
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "base/names.h"
 #include "daemon/backoff.h"
 #include "daemon/clerk.h"
 #include "daemon/model_options.h"

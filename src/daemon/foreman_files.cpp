@@ -1,5 +1,6 @@
 // How files come to the foreman, and where they go at the end. What lies in watched folders is
 // touched by their clerks alone (folder_clerk.h).
+#include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/job_view.h"
 #include "daemon/model_options.h"

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <chrono>
 
+#include "base/names.h"
 #include "base/process.h"
 #include "daemon/child_json.h"
 #include "daemon/job_folder.h"
