@@ -95,4 +95,9 @@ std::vector<std::string> executed_by_marlin(std::size_t commands) {
   return lines;
 }
 
+std::vector<std::string> without_questions(std::vector<std::string> record) {
+  std::erase(record, "M105");
+  return record;
+}
+
 }  // namespace packmerger::test

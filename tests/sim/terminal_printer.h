@@ -57,5 +57,7 @@ std::string program_of(Machine machine, std::size_t moves);
 
 // What the simulated Marlin records of a print of gcode_program(commands).
 std::vector<std::string> executed_by_marlin(std::size_t commands);
+// A record without the M105 by which the link asks now and then where the printer is.
+std::vector<std::string> without_questions(std::vector<std::string> record);
 
 }  // namespace packmerger::test

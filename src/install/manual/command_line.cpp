@@ -4,8 +4,9 @@ namespace packmerger::manual {
 namespace {
 
 // CLI11 writes "TEXT:{mm,cm,in}" for a set, and "ENUM:value in {packed->0,solid->2} OR …" for a
-// map.
+// map; ours are written "packed|solid".
 std::vector<std::string> choices_in(const std::string& type) {
+  if (type.find('|') != std::string::npos) return CLI::detail::split(type, '|');
   std::vector<std::string> choices;
   const std::size_t open = type.find('{');
   if (open == std::string::npos) return choices;

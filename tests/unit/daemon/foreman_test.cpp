@@ -273,8 +273,9 @@ TEST(Api, AnswersEveryKindOfNonsense) {
   EXPECT_TRUE(
       json::parse(answer(*shop.foreman_, shop.keys_, std::string(60000, '['))).contains("error"));
   EXPECT_EQ(shop.ask({{"verb", "jobs.list"}}).at("result").size(), 1U);
-  EXPECT_EQ(shop.ask({{"verb", "jobs.list"}, {"before", 2}}).at("result").size(), 1U);
-  EXPECT_TRUE(shop.ask({{"verb", "jobs.list"}, {"before", 1}}).at("result").empty());
+  for (const int before : {1, 2})
+    EXPECT_TRUE(shop.ask({{"verb", "jobs.list"}, {"before", before}}).at("result").empty())
+        << "what has not ended stands on no later page";
 }
 
 // What the sender's thread would find at its control.

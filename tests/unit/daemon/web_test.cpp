@@ -162,8 +162,9 @@ TEST(WebRoutes, AreThoseOfTheDocument) {
 }
 
 TEST(WebRoutes, OnlyFilesOfAJobFolderAreShown) {
-  for (const char* name : {"job.json", "preview.png", "assembly.glb", "page.glb", "tray.3mf", "tray-2.stl",
-                           "program.gcode", "program-3.x3g", "01.stl", "profile.toml"})
+  for (const char* name :
+       {"job.json", "preview.png", "assembly.glb", "page.glb", "tray.3mf", "tray-2.stl",
+        "program.gcode", "program-3.x3g", "01.stl", "profile.toml"})
     EXPECT_TRUE(is_job_file(name)) << name;
   for (const char* name : {"", ".", "..", "input", "x.stl", "tray-.stl", "job.json\n", "01.stl.txt",
                            "../job.json", "jobs.sqlite", "preview.pngx"})

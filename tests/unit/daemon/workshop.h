@@ -105,6 +105,7 @@ class Workshop {
       if (const auto* distant = std::get_if<FetchOrder>(&*order)) tell(fetch(*distant));
       if (const auto* ended = std::get_if<PlaceOrder>(&*order)) tell(place(*ended));
       if (const auto* placed = std::get_if<FileOrder>(&*order)) tell(file(*placed));
+      if (const auto* old = std::get_if<DeleteOrder>(&*order)) tell(clear_away(*old));
     }
   }
 

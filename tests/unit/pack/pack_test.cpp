@@ -239,24 +239,26 @@ TEST(Pack, APartThatFitsNoTrayIsRefusedWithItsSize) {
 }
 
 TEST(Pack, SettingsWithoutSenseAreRefused) {
-  const auto refused = [](auto change) {
+  const auto refused = [](auto change, Fault fault = Fault::kUsage) {
     PackProblem problem = problem_of({shapes::box(Vec3(5, 5, 5))}, Vec3(50, 50, 50));
     change(problem);
     try {
       pack(problem, {});
     } catch (const Error& error) {
-      return error.fault() == Fault::kUsage;
+      return error.fault() == fault;
     }
     return false;
   };
   EXPECT_TRUE(refused([](PackProblem& p) { p.items.clear(); }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.grid_mm = 0; }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.grid_mm = 1e-6; }));
-  EXPECT_TRUE(refused([](PackProblem& p) {
-    p.build_mm = Vec3(1, 1, 1);
-    p.grid_mm = 1e-3;
-    p.items[0].surface = shapes::box(Vec3(5, 5, 100));
-  }));
+  EXPECT_TRUE(refused(
+      [](PackProblem& p) {
+        p.build_mm = Vec3(1, 1, 1);
+        p.grid_mm = 1e-3;
+        p.items[0].surface = shapes::box(Vec3(5, 5, 100));
+      },
+      Fault::kBadInput));
   EXPECT_TRUE(refused([](PackProblem& p) { p.gap_mm = -1; }));
   EXPECT_TRUE(refused([](PackProblem& p) { p.build_mm.z() = 0; }));
 }
