@@ -122,8 +122,10 @@ TEST_F(Cleaning, ByHandAndThenPreparedAnew) {
   shop_.run_the_clerk();
   EXPECT_EQ(shop_.job(3).state, JobState::kReceived) << "from the model below done/";
   fs::remove(shop_.job(job).filed);
-  const json gone = shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("error");
-  EXPECT_EQ(gone.at("hint"), "Drop the model into the watched folder again.");
+  const json gone = shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("result");
+  shop_.run_the_clerk();
+  EXPECT_EQ(shop_.view(gone.at("id")).at("state"), "failed");
+  EXPECT_NE(shop_.view(gone.at("id")).at("hint"), "");
 }
 
 TEST_F(Cleaning, GoesOnWhereADaemonDied) {
