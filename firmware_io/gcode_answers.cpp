@@ -75,8 +75,9 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
 void GcodeStream::handle_resend(std::size_t asked) {
   std::size_t next = asked;
   if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
-  // A printer that was reset asks for line 1; in the first lines that would seem to be near.
-  if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 0))) {
+  // A printer that was reset asks for line 1; in the first lines that would seem to be near. Line 1
+  // itself may have lost its number on the way, and was answered as a line without one.
+  if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 1))) {
     if (asked == far_back_)
       fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
                " after line " + std::to_string(last_) + "): it was probably reset",

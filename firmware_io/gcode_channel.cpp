@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "firmware_io/ascii.h"
 #include "firmware_io/conversation.h"
 
@@ -175,7 +176,9 @@ std::optional<GcodeReply> GcodeChannel::take_line() {
     const std::string line = pending_.substr(0, end);
     pending_.erase(0, end + 1);
     scanned_ = 0;
-    if (line.find_first_not_of(" \r\t") != std::string::npos) return read_gcode_reply(line);
+    // What a printer says is shown to people: none of it is to steer their terminal.
+    if (line.find_first_not_of(" \r\t") != std::string::npos)
+      return read_gcode_reply(printable_lines(line));
   }
 }
 

@@ -49,6 +49,8 @@ void check_size(const std::string& name, const Mesh& surface, Warnings& warnings
 
 // A sliced file's model may be there too, or not: what its maker sees is the program.
 void refuse_sliced(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return;  // a pipe may never end
   std::array<char, 4> start{};
   std::ifstream(path, std::ios::binary).read(start.data(), start.size());
   if (!ZipArchive::looks_like({start.data(), start.size()})) return;

@@ -46,6 +46,24 @@ TextForm gpx_form() {
           [](std::string_view text) { return all(text, "abcdefghijklmnopqrstuvwxyz0123456789"); }};
 }
 
+// As a line goes to the printer, with a number of eight digits and its checksum, it has 95 bytes at
+// most; "M110" anywhere in it would set the count of lines.
+TextForm gcode_form() {
+  return {"lines of G-code: plain ASCII, 81 characters each at most, no M110",
+          [](std::string_view text) {
+            constexpr std::size_t kLongest = 95 - std::string_view("N99999999 *255").size();
+            while (!text.empty()) {
+              const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+              text.remove_prefix(std::min(line.size() + 1, text.size()));
+              const std::string_view command = line.substr(0, line.find(';'));
+              if (command.size() > kLongest || command.find("M110") != command.npos ||
+                  !std::ranges::all_of(command, [](char c) { return c >= ' ' && c <= '~'; }))
+                return false;
+            }
+            return true;
+          }};
+}
+
 TextForm usb_form() {
   return {"vendor:product in lower-case hex, such as 23c1:d314", [](std::string_view text) {
             const std::string_view hex = "0123456789abcdef";
@@ -255,11 +273,11 @@ void add_link(LinkSettings& s, std::vector<Key>& keys) {
         "Wait after opening the port, for boards that reset then."},
        {"link.usb_ids", TextsKey{&s.usb_ids, usb_form()}, "",
         "USB vendor and product numbers the machine shows itself by."},
-       {"link.safe_gcode", TextKey{&s.safe_gcode, {}}, "",
+       {"link.safe_gcode", TextKey{&s.safe_gcode, gcode_form()}, "",
         "Sent after a failure or a cancel: heaters off."},
-       {"link.pause_gcode", TextKey{&s.pause_gcode, {}}, "",
+       {"link.pause_gcode", TextKey{&s.pause_gcode, gcode_form()}, "",
         "Dialect gcode: executed when a print pauses and its moves are done."},
-       {"link.resume_gcode", TextKey{&s.resume_gcode, {}}, "",
+       {"link.resume_gcode", TextKey{&s.resume_gcode, gcode_form()}, "",
         "Dialect gcode: executed before it goes on; undoes the moves of pause_gcode."},
        {"link.window_bytes", IntegerKey{&s.window_bytes, from_to(0, 96)}, "bytes",
         "Dialect gcode: sent and not acknowledged at most; 0: a line at a time."},

@@ -215,7 +215,8 @@ class Daemon(watched.Watched):
         self.ends(1, "done")
         job = self.job(1)
         self.assertEqual((pathlib.Path(job["folder"]) / "program.gcode").read_bytes(), data)
-        printed = self.record.read_text().splitlines()
+        # now and then the link asks where the printer is
+        printed = [line for line in self.record.read_text().splitlines() if line != "M105"]
         wanted = sent(data)
         at = printed.index(wanted[0])
         self.assertEqual(printed[at:at + len(wanted)], wanted)

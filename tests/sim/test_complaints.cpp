@@ -151,5 +151,30 @@ TEST(UnknownCommands, OthersAreToldOnce) {
   EXPECT_EQ(told, "the printer passes over what it does not know: M73, T0, M204");
 }
 
+TEST(Complaint, WhatAPrinterSaysSteersNoTerminal) {
+  std::vector<std::string> executed;
+  const auto failure = print_with_answer(
+      "Error:Printer halted.\x1B[2J\x1B]0;x\x07 \xE2\x80\xAE\xFF kill() called!\n", executed);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("Printer halted.?[2J?]0;x? ?? kill() called!"));
+}
+
+// A flipped bit in the N makes line 1 a line without a number, which gets an ok all the same.
+TEST(Complaint, ALineOneThatLostItsNumberIsNoReset) {
+  bool seen = false;
+  bool has_one = false;
+  Parrot firmware([&](const std::string& line) -> std::string {
+    if (line.rfind("N1 ", 0) == 0) has_one = std::exchange(seen, true);
+    const bool numbered = line.rfind("N", 0) == 0 && line.find("M110") == std::string::npos;
+    if (numbered && seen && !has_one && line.rfind("N1 ", 0) != 0)
+      return "Error:Line Number is not Last Line Number+1, Last Line: 0\nResend: 1\nok\n";
+    return line.find("M114") == std::string::npos ? polite(line) : "X:0 Y:0 Z:0 E:0\nok\n";
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  EXPECT_FALSE(failure) << failure->what();
+}
+
 }  // namespace
 }  // namespace packmerger::test

@@ -339,6 +339,19 @@ TEST_F(ProfileTest, DeepAndWideTomlIsRefused) {
   refusal(many + "1]\n");
 }
 
+TEST_F(ProfileTest, TextsForThePrinterAreWhatItsLineCanHold) {
+  const auto with = [](const std::string& key, const std::string& text) {
+    return kSmall + "[link]\n" + key + " = \"" + text + "\"\n";
+  };
+  const std::string fits = "G1 X10 ; \u00FCber\\nM104 S0\\n" + std::string(81, 'G');
+  for (const std::string key : {"safe_gcode", "pause_gcode", "resume_gcode"}) {
+    EXPECT_NO_THROW(read_text(with(key, fits)));
+    for (const std::string wrong : {"M117 f\u00FCr", "M117 M1100", "M110 N0"})
+      EXPECT_THAT(refusal(with(key, wrong)), HasSubstr("link." + key));
+    EXPECT_THAT(refusal(with(key, "M84\\n" + std::string(82, 'G'))), HasSubstr("link." + key));
+  }
+}
+
 TEST(Profiles, AnyDocumentPrinterCanBeSetToUsb) {
   for (const char* id : {"objet30", "uprint"}) {
     Profile profile = read_profile(id);
