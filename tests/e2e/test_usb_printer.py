@@ -93,7 +93,7 @@ class Daemon(unittest.TestCase):
     """packmergerd, beside a printer that comes and goes."""
 
     CONFIG = """state = "state"
-retry_s = 3600
+retry_s = 20
 [watch]
 still_s = 0.1
 [printer.bridge]
