@@ -122,7 +122,7 @@ class LostPrinter(unittest.TestCase):
         self.assertEqual(again.code, 0, str(again))
         executed = record.read_text()
         if profile == "marlin":
-            self.assertIn(gcode(), executed)
+            self.assertIn(gcode(), executed.replace("M105\n", ""))
         else:
             self.assertEqual(bytes.fromhex(executed), x3g())
 
@@ -150,8 +150,8 @@ class LostPrinter(unittest.TestCase):
         folder = self.folder / name
         folder.mkdir()
         prepare = folder / "prepare.py"  # stands in for packmerger prepare: the job is there already
-        prepare.write_text("#!/usr/bin/python3\nimport shutil, sys\n"
-                           f"shutil.copytree('{self.folder / 'job'}', sys.argv[sys.argv.index('--out') + 1])\n")
+        prepare.write_text("#!/usr/bin/python3\nimport subprocess, sys\n"
+                           f"subprocess.run(['cp', '-r', '{self.folder / 'job'}', sys.argv[sys.argv.index('--out') + 1]], check=True)\n")
         prepare.chmod(0o755)
         config = folder / "d.toml"
         config.write_text(f"""
