@@ -207,6 +207,7 @@ TEST_F(PackmergerdTest, SocketAbuseDoesNotDisturbIt) {
 TEST_F(PackmergerdTest, TellsWhyItDoesNotTakeALink) {
   configure("/nonexistent/port");
   start();
+  fs::create_directories(path("state/folders/m"));
   fs::create_symlink("/etc/passwd", path("state/folders/m/link.stl"));
   EXPECT_TRUE(
       wait_until([&] { return fs::exists(path("state/folders/m/failed/link.stl.reason.txt")); }));
