@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/clock.h"
 #include "firmware_io/usb_library.h"
 
 namespace packmerger {
@@ -14,10 +15,6 @@ namespace {
 constexpr double kSlice_s = 0.25;
 // A serial port and its links are made some time after the device behind them came.
 constexpr double kSettle_s = 3;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // libusb's hotplug; where the system has none it only waits.
 class Hotplug {
@@ -88,13 +85,13 @@ void watch_devices(const std::atomic<bool>& stop, double rescan_s, const DeviceL
   double look_at_s = 0;
   double settled_at_s = 0;
   while (!stop) {
-    const double now = now_s();
+    const double now = steady_now_s();
     if (now >= look_at_s) {
       teller.look();
       look_at_s = now + (now < settled_at_s ? kSlice_s : rescan_s);
     }
     if (!hotplug.wait(kSlice_s)) continue;
-    look_at_s = now_s();
+    look_at_s = steady_now_s();
     settled_at_s = look_at_s + kSettle_s;
   }
 }

@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <climits>
 #include <cstdlib>
 #include <cstring>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "firmware_io/fd_port.h"
 
@@ -54,9 +54,7 @@ Descriptor lock_port(const std::string& path, const std::string& address) {
 
 }  // namespace
 
-double Port::now_s() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double Port::now_s() const { return steady_now_s(); }
 
 void throw_busy(const std::string& address) {
   throw Error(Fault::kBusy, "The port " + address + " is held by another program",

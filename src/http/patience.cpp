@@ -8,14 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/clock.h"
+
 namespace packmerger {
 namespace {
 
 constexpr std::chrono::milliseconds kLookEvery(250);
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Nothing else was sent yet but perhaps "100 Continue", so that this is what the client reads.
 void end(HttpSender& sender) {
@@ -44,7 +42,7 @@ HttpSender* Patience::begun(int socket, const std::string& peer) {
   HttpSender& sender = senders_.emplace_back();
   sender.socket = socket;
   sender.peer = peer;
-  sender.since_s = now_s();
+  sender.since_s = steady_now_s();
   make_room();
   return &sender;
 }
@@ -74,7 +72,7 @@ void Patience::ended(HttpSender* sender) {
 void Patience::awaits(HttpSender* sender, HttpSender::Awaits awaits) {
   const std::lock_guard lock(mutex_);
   sender->awaits = awaits;
-  sender->since_s = now_s();
+  sender->since_s = steady_now_s();
   sender->bytes = 0;
 }
 
@@ -100,7 +98,7 @@ bool Patience::is_late(const HttpSender& sender, double now) const {
 void Patience::watch() {
   std::unique_lock lock(mutex_);
   while (!ending_) {
-    const double now = now_s();
+    const double now = steady_now_s();
     for (HttpSender& sender : senders_)
       if (is_late(sender, now)) end(sender);
     changed_.wait_for(lock, kLookEvery, [&] { return ending_; });
