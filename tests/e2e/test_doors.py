@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Slicers at the daemon's doors: what they send is replayed byte for byte, and curl uploads as a second client."""
 import http.client
+import io
 import json
 import pathlib
 import socket
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import time
 import unittest
+import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
@@ -266,6 +268,47 @@ class Cura(Doors):
         self.assertEqual(self.ask("POST", path, {"command": "select"})[0], 204)
         self.assertEqual(self.ask("POST", "/api/files/local/none.stl", {"command": "select", "print": True})[0], 404)
         self.assertEqual(self.ask("POST", path, {"command": "slice"})[0], 400)
+
+
+class SlicedPlates(Doors):
+    """.gcode.3mf, as Orca and Bambu Studio send it, at each of the three doors."""
+
+    @staticmethod
+    def plate():
+        content = io.BytesIO()
+        with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("3D/3dmodel.model", "<model/>")
+            archive.writestr("Metadata/plate_1.gcode", b"G28\nG1 X10\n")
+        return content.getvalue()
+
+    def by_octoprint(self, base):
+        status, body, _ = self.upload(b"plate.gcode.3mf", self.plate(), base=base)
+        return status, body, lambda told: told["files"]["local"]["job"]
+
+    def by_prusalink(self, base):
+        (status, body, _), = self.talk(wire.put_headers(base + "/api/v1/files/local/plate.gcode.3mf", self.daemon.key,
+                                                        len(self.plate())) + self.plate())
+        return status, body, lambda told: told["job"]
+
+    def by_moonraker(self, base):
+        form = wire.form([(b"root", b"gcodes"), (b"print", b"false")], b"plate.gcode.3mf", self.plate())
+        (status, body, _), = self.talk(wire.post_headers(base + "/server/files/upload", self.daemon.key, len(form)) + form)
+        return status, body, lambda told: self.newest()
+
+    def newest(self):
+        return json.loads(self.daemon.ask("GET", "/api/v1/jobs")[1])[0]["id"]
+
+    def test_is_a_program_at_every_door(self):
+        for send in (self.by_octoprint, self.by_prusalink, self.by_moonraker):
+            with self.subTest(send.__name__):
+                status, body, number = send("/printers/lab")
+                self.assertEqual(status, 201, body)
+                job = self.job(number(json.loads(body)))
+                self.assertEqual(job["name"], "plate.gcode.3mf")
+                self.assertEqual(job["kind"], "program")
+                status, body, _ = send(BASE)
+                self.assertEqual(status, 422, body)
+                self.assertIn(b"takes no program", body)
 
 
 class Large(Doors):
