@@ -25,9 +25,10 @@ struct LoadedModel {
   std::shared_ptr<const Mesh> surface;  // closed, outward, mm; shared by copies of one file
 };
 
-// One entry per path, in order; a path named twice is read once. Adds warnings "repaired", "left_out" and
-// "suspicious_size" (longest side under 5 mm or over 2 m). Throws what read_model and repair throw,
-// and Error{kBadInput} where the longest side is under 0.1 mm or over 10 m.
+// One entry per path, in order; a path named twice is read once. Bodies of one file that overlap
+// are made one. Adds warnings "left_out", "suspicious_size" (longest side under 5 mm or over 2 m),
+// and those of repair() and unite_bodies(). Throws what read_file, read_model and repair throw, and
+// Error{kBadInput} where the longest side is under 0.1 mm or over 10 m, or the file is sliced.
 std::vector<LoadedModel> load_models(const std::vector<std::filesystem::path>& paths,
                                      const Sizing& sizing, Warnings& warnings,
                                      const Progress& progress);

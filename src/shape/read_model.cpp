@@ -12,7 +12,6 @@
 namespace packmerger {
 namespace {
 
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30;
 constexpr double kMaxCoordinate = 1e9;
 
 std::string lower_case(std::string_view text) {
@@ -118,9 +117,7 @@ void check(const TriangleSoup& soup) {
 
 }  // namespace
 
-ModelFile read_model(const fs::path& path, const Progress& progress) {
-  progress.report("reading", 0);
-  const std::string bytes = read_file(path, kMaxFileBytes);
+ModelFile read_model(std::string_view bytes, const fs::path& path, const Progress& progress) {
   try {
     return read_model_bytes(bytes, path.extension().string(), progress);
   } catch (const Error& error) {

@@ -1,6 +1,7 @@
 // Reads a model file: STL (binary and ASCII), OBJ, PLY (ASCII and binary), OFF and core 3MF.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "model/mesh.h"
 
 namespace packmerger {
+
+constexpr std::uint64_t kMaxModelBytes = std::uint64_t{1} << 30;
 
 struct ModelFile {
   TriangleSoup soup;      // the file's unit; mm where has_unit
@@ -37,11 +40,12 @@ struct ModelFile {
 // levels of components; coordinates up to 1e9. Memory stays below 64 times the file's size (for
 // 3MF, of the inflated part) plus the returned soup.
 //
-// Throws Error: kNoInput (no such file), kIo, kBadInput (unknown format, broken or truncated file,
-// no triangles, non-finite coordinates, above a limit), kInterrupted.
-ModelFile read_model(const fs::path& path, const Progress& progress);
+// bytes: what the file at path holds; errors name the file. Throws Error: kBadInput (unknown
+// format, broken or truncated file, no triangles, non-finite coordinates, above a limit),
+// kInterrupted.
+ModelFile read_model(std::string_view bytes, const fs::path& path, const Progress& progress);
 
-// The same for bytes in memory; extension with or without its dot, any case, may be empty.
+// The same for bytes without a name; extension with or without its dot, any case, may be empty.
 ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
                            const Progress& progress);
 
