@@ -21,6 +21,7 @@
 
 #include "base/error.h"
 #include "shape/orient.h"
+#include "shape/shape_change.h"
 #include "shape/soup.h"
 #include "shape/t_junctions.h"
 
@@ -33,8 +34,6 @@ using CgalMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 // Pieces with a border that hold less of the area than this are debris, not part of the model.
 constexpr double kShardArea = 1e-3;
-// What changes more than this of the area or the volume is told apart.
-constexpr double kChanged = 0.01;
 // A hole that reaches over this much of the model in two directions leaves a skin, not a body.
 constexpr double kWholeWidth = 0.9;
 // Points nearer than this fraction of the diagonal are welded when equal points alone leave holes:
@@ -233,37 +232,6 @@ std::string told(const Counts& counts, int number_of_parts) {
          (number_of_parts > 1 ? "; it consists of " + pieces : "");
 }
 
-// Of figures that should be the same; of nothing, nothing.
-double change(double before, double after) {
-  return before > 0 ? std::abs(after - before) / before : 0;
-}
-
-std::string percent(double part) {
-  return std::to_string(std::max(1L, std::lround(100 * part))) + " %";
-}
-
-// Adds a warning where the result is not quite the shape that the file holds.
-void warn_of_change(double area_before, double volume_before, const TriangleSoup& after,
-                    const Counts& counts, Warnings& warnings) {
-  const double area = change(area_before, area_mm2(after));
-  const double volume = change(volume_before, signed_volume_mm3(after));
-  std::string text;
-  if (area > kChanged) text = "area by " + percent(area);
-  if (volume > kChanged)
-    text += (text.empty() ? "" : " and its ") + ("volume by " + percent(volume));
-  if (text.empty() && !counts.is_skin) return;
-  std::string sentence = text.empty() ? "" : "Mending the model changed its " + text;
-  if (counts.is_skin)
-    sentence += (text.empty() ? "The model" : ": it") +
-                std::string(
-                    " was open over its whole width and was closed to a solid body; if it "
-                    "is a skin without thickness, give it one in the program it was drawn "
-                    "with");
-  else if (counts.swallowed > 0)
-    sentence += ": pieces within other pieces, turned like them, are matter, not cavities";
-  warnings.push_back({"shape_changed", sentence});
-}
-
 }  // namespace
 
 Mesh repair(const TriangleSoup& input, Warnings& warnings, const Progress& progress) {
@@ -275,9 +243,8 @@ Mesh repair(const TriangleSoup& input, Warnings& warnings, const Progress& progr
   soup = welded(soup, 0);
   if (soup.triangles.size() < 4) refuse("it has fewer than four triangles");
   counts.degenerate_facets += count_flat(soup);
-  const double area_before = area_mm2(soup);
+  const TriangleSoup before = soup;
   const bool is_closed = is_closed_manifold(soup);
-  const double volume_before = is_closed ? std::abs(signed_volume_mm3(soup)) : 0;
   TriangleSoup of_file = soup;
   if (counts.degenerate_facets > 0 || !is_closed) soup = closed(of_file, counts, progress);
   progress.report("repairing", 0.7);
@@ -288,7 +255,9 @@ Mesh repair(const TriangleSoup& input, Warnings& warnings, const Progress& progr
   if (orientation.pieces == 0) refuse("it encloses no volume");
   if (!is_closed_manifold(soup)) refuse("some holes or crossing sheets could not be mended");
   if (counts.any()) warnings.push_back({"repaired", told(counts, orientation.pieces)});
-  warn_of_change(area_before, volume_before, soup, counts, warnings);
+  if (counts.any())
+    warn_of_change({before, is_closed, soup, counts.is_skin, counts.swallowed > 0}, warnings,
+                   progress);
   Mesh mesh = closed_mesh(soup);
   progress.report("repairing", 1);
   return mesh;

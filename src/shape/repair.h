@@ -13,8 +13,7 @@ namespace packmerger {
 // inside others), and divides edges on which other edges end. What was changed is told in one
 // warning with code "repaired" whose text counts it: open edges, facets without area, edges mended,
 // facets removed, turned round and added, holes filled, pieces within matter, and the pieces where
-// there are several. Where that changed the area by more than 1 %, or the volume of what was closed
-// before, or closed what was open over its whole width, "shape_changed" tells it.
+// there are several. What changed the shape is told by "shape_changed" (shape_change.h).
 //
 // A closed 2-manifold that is oriented outwards passes unchanged: the same points and triangles in
 // the same order, no warning.

@@ -199,6 +199,26 @@ TEST(Repair, TellsThatASkinBecameABody) {
   EXPECT_EQ(repaired(ball).changed, "");
 }
 
+// A bottle that is drawn without thickness: its mouth is a hundredth of its area.
+TEST(Repair, TellsOfAWideHoleAndOfWhatIsLeftOut) {
+  TriangleSoup bottle = fixtures::sphere(10, 3);
+  std::erase_if(bottle.triangles, [&](const auto& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(),
+                       [&](int corner) { return bottle.points[corner].z() > 9.8; });
+  });
+  EXPECT_THAT(repaired(bottle).changed, HasSubstr("closed a hole wider than 5 %"));
+
+  TriangleSoup shard = fixtures::sphere(10, 3);
+  const int base = static_cast<int>(shard.points.size());
+  shard.points.insert(shard.points.end(), {{20, 0, 0}, {20.1, 0, 0}, {20, 0.1, 0}});
+  shard.triangles.push_back({base, base + 1, base + 2});
+  EXPECT_THAT(repaired(shard).changed, HasSubstr("left out"));
+  for (int i = 0; i < 3; ++i) shard.points[base + i].x() -= 9.95;
+  EXPECT_EQ(repaired(shard).changed, "") << "beside the surface";
+  for (int i = 0; i < 3; ++i) shard.points[base + i].x() -= 6;
+  EXPECT_EQ(repaired(shard).changed, "") << "within the matter";
+}
+
 TEST(Repair, FillsHoles) {
   TriangleSoup soup = fixtures::cube(10);
   soup.triangles.erase(soup.triangles.begin() + 3);                          // of the top
