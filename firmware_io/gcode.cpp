@@ -91,6 +91,12 @@ bool is_long(std::string_view command) {
 
 bool blocks(std::string_view command) { return is_heating(command) || is_long(command); }
 
+bool tells_position(std::string_view command) {
+  static constexpr std::array<std::string_view, 8> kWords = {"M114", "G28", "G29",  "G30",
+                                                             "G33",  "G34", "M206", "M428"};
+  return one_of(gcode_word(command), kWords);
+}
+
 Omission omission_of(std::string_view word) {
   static constexpr std::array<std::string_view, 5> kOfPerson = {"M0", "M1", "M226", "M600", "M601"};
   static constexpr std::array<std::string_view, 18> kOfPrint = {

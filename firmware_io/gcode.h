@@ -32,6 +32,7 @@ std::string_view gcode_word(std::string_view command);
 bool is_heating(std::string_view command);  // blocks until a temperature is reached
 bool is_long(std::string_view command);     // may block long: homing, dwelling, waiting for moves
 bool blocks(std::string_view command);      // either of them
+bool tells_position(std::string_view command);  // M114, and homing and probing at their end
 bool waits_for_user(std::string_view command);  // M0 or M1 without a time
 
 // What a printer that does not know a command of this word leaves out of a print.

@@ -63,10 +63,14 @@ bool tells_heater_failure(const std::string& line) {
   return has_any(line, kTexts);
 }
 
-// What a stopped printer says without the mark of an error, to every move that it refuses.
+// What a stopped printer says without the mark of an error: Marlin to every move that it refuses,
+// Klipper once, the moment that it shuts down or restarts. What Klipper is busy with is never
+// answered then.
 bool tells_stop_plainly(std::string_view line) {
   return line.starts_with("Printer stopped due to errors") ||
-         line.starts_with("echo:Printer stopped due to errors");
+         line.starts_with("echo:Printer stopped due to errors") ||
+         line.starts_with("// Klipper state: Shutdown") ||
+         line.starts_with("// Klipper state: Disconnect");
 }
 
 // Lines that say that something is wrong; false for others.

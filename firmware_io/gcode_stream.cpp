@@ -174,7 +174,7 @@ void GcodeStream::handle(const GcodeReply& reply) {
       break;
     case GcodeReplyKind::kPosition:
       if (is_behind_program(last_)) position_seen_ = true;
-      if (gcode_word(command(last_)) != "M114") positions_unasked_ = true;
+      if (!tells_position(command(last_))) positions_unasked_ = true;
       break;
     default:
       cancelling_ ? hear_while_cancelling(reply) : handle_action(reply);

@@ -171,6 +171,7 @@ void Marlin::keep_alive(double now_s) {
 }
 
 void Marlin::finish() {
+  if (std::exchange(says_position_, false)) say(position());
   say(reply_ == "ok" && traits_.advanced_ok ? advanced_ok() : reply_);
   constexpr std::size_t kDoubled = 5;
   if (traits_.doubled_ok && ++oks_ % kDoubled == 0) say(reply_);

@@ -103,6 +103,7 @@ class Marlin : public Firmware {
   bool asks_to_purge_ = false;
   double report_every_s_ = 0;  // M155
   double next_auto_s_ = kNever;
+  bool says_position_ = false;    // before the ok, as behind homing
   double positions_every_s_ = 0;  // M154
   double next_position_s_ = kNever;
   double busy_every_s_ = 2;  // M113

@@ -104,6 +104,7 @@ bool Marlin::execute_move(const std::string& command, double now_s) {
   }
   if (is(command, "G28")) {
     position_[0] = position_[1] = position_[2] = 0;
+    says_position_ = true;
     block(Blocked::kUntil, now_s, now_s + pace_.machine_s(kHoming_s));
     return true;
   }

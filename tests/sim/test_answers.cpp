@@ -97,6 +97,16 @@ TEST(Life, PositionsAreSilencedBeforeTheEndIsProven) {
   EXPECT_EQ(only(port.executed(), gcode_program(50)), gcode_program(50));
 }
 
+// Which is no command of older firmware, and would be told as one that the printer passes over.
+TEST(Life, ThePositionBehindHomingIsNotUnasked) {
+  Marlin firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  EXPECT_FALSE(print(port, true, "G28\n" + joined(gcode_program(50)), control));
+  EXPECT_THAT(port.executed(), ::testing::Contains("G28"));
+  EXPECT_EQ(count(port.executed(), "M154 S0"), 0u);
+}
+
 // How far the host is ahead of the printer at most, over a line that doubles answers and hands
 // them over in pieces. One line is on its way, so a lead of two is an ok too many.
 std::size_t longest_lead(MarlinTraits traits, FaultRates rates) {

@@ -55,12 +55,15 @@ INSTANTIATE_TEST_SUITE_P(
         Complaint{"Error:checksum misoatch, Last Line: 6\nResend: 7\nok\n", ""},
         Complaint{"Errxr:chec\xFFsum\nResend: 7\nok\n", ""},
         Complaint{"Error:Probing Failed\nok\n", ""},
+        Complaint{"// Klipper state: Ready\nok\n", ""},  // somebody asked it for its STATUS
         // not
         Complaint{"Error:Printer halted. kill() called!\n", "kill() called!"},
         Complaint{"Error:!! STOP called because of unhomed error - restart with M999\nok\n",
                   "STOP called"},
         Complaint{"fatal: extruder switch decoupled\nok\n", "fatal: extruder"},
         Complaint{"!! Must home axis first\nok\n", "!! Must home axis first"},
+        Complaint{"// Klipper state: Shutdown\n", "Klipper state: Shutdown"},
+        Complaint{"// Klipper state: Disconnect\n", "Klipper state: Disconnect"},
         Complaint{"Error:Heating failed, system stopped! Heater_ID: 0\n",
                   "A heater of the printer"}));
 

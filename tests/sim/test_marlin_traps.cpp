@@ -127,7 +127,8 @@ TEST(MarlinTraps, SaysBusyWhileACommandBlocks) {
     Wire wire(marlin);
     const std::string said = wire.says("G28\nM82\n", 4.9);
     EXPECT_EQ(said, busy ? "echo:busy: processing\necho:busy: processing\n" : "");
-    EXPECT_EQ(wire.says("", 0.2), "ok\nok\n");
+    EXPECT_EQ(wire.says("", 0.2), "X:0.00 Y:0.00 Z:0.00 E:0.00 Count X:0 Y:0 Z:0\nok\nok\n")
+        << "homing ends with the position";
   }
 }
 
