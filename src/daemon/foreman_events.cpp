@@ -140,13 +140,14 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   if (event.outcome == SendOutcome::kFailed)
     return end(job, JobState::kFailed, with_told(job, sentence(event.failure)), event.failure.hint);
   if (event.outcome == SendOutcome::kCancelled) {
-    // a printer that did not obey is worth telling
-    const bool obeyed = event.failure.fault == Fault::kInterrupted;
+    // a printer that did not obey, whose heaters may be on, is worth telling
+    const bool obeyed = event.failure.fault == Fault::kInterrupted && event.failure.hint.empty();
     const std::string tail = obeyed ? "" : ": " + sentence(event.failure);
     if (stopping_)
       return end(job, JobState::kFailed,
                  with_told(job, "the daemon was stopped while printing" + tail),
-                 "Clear the bed and print again with packmerger jobs again " +
+                 (obeyed ? "" : event.failure.hint + " ") +
+                     "Clear the bed and print again with packmerger jobs again " +
                      std::to_string(job.id) + ".");
     return end(job, JobState::kCancelled, with_told(job, "cancelled while printing" + tail),
                obeyed ? "" : event.failure.hint);

@@ -15,8 +15,11 @@ import tty
 import unittest
 
 import program
+from stuck_printer import StuckPrinter
 
 PATIENCE_S = 60
+LEAVES_S = 20  # of a profile with 30 s of patience
+SAFE = b"\nM410\nM108\nM104 S0\nM140 S0\nM107\nM84\n"
 
 
 def write_job(folder, lines):
@@ -121,6 +124,57 @@ class Sending(unittest.TestCase):
         self.wait_for(lambda: child.poll() is not None, "it ends")
         self.assertEqual(child.returncode, 130)
         self.assertEqual(record.read_text().splitlines().count("M140 S0"), 1, "heaters off")
+
+    def stuck(self):
+        """A printer that takes lines until it is to wait for heat, and then neither answers nor obeys."""
+        printer = StuckPrinter(self)
+        return printer, write_job(self.folder / "job", ["M140 S60", "M190 S60", *moves(10)])
+
+    def expect_left(self, child, begun, told):
+        self.wait_for(lambda: child.poll() is not None, "it ends")
+        self.assertLess(time.monotonic() - begun, LEAVES_S, "a cancel would wait for the printer")
+        self.assertEqual(child.returncode, 130)
+        self.assertIn("heaters may be on", told())
+
+    def test_two_interrupts_write_the_safe_text_and_wait_for_nothing(self):
+        printer, job = self.stuck()
+        errors = self.folder / "errors.txt"
+        with open(errors, "wb") as stderr:
+            child = self.start(["send", job, "--port", printer.name], stdin=subprocess.DEVNULL, stderr=stderr)
+        self.wait_for(lambda: b"M190" in printer.heard, "it heats")
+        begun = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: b"M108" in printer.heard, "it cancels")
+        self.assertNotIn(b"\nM104 S0\n", printer.heard)
+        child.send_signal(signal.SIGINT)
+        self.expect_left(child, begun, lambda: errors.read_text())
+        self.wait_for(lambda: SAFE in printer.heard, "without numbers, so that it is obeyed whatever was lost")
+
+    def test_the_third_ctrl_c_writes_the_safe_text_and_waits_for_nothing(self):
+        printer, job = self.stuck()
+        child, shows, _ = self.at_terminal(job, printer.name)
+        self.wait_for(lambda: b"M190" in printer.heard, "it heats")
+        begun = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: shows("c: cancel"), "it asks")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: b"M108" in printer.heard, "it cancels")
+        child.send_signal(signal.SIGINT)
+        self.expect_left(child, begun, lambda: "heaters may be on" if shows("heaters may be on") else "")
+        self.wait_for(lambda: SAFE in printer.heard, "the safe text")
+
+    def test_a_port_that_takes_nothing_is_left_and_told(self):
+        printer, job = self.stuck()
+        errors = self.folder / "errors.txt"
+        with open(errors, "wb") as stderr:
+            child = self.start(["send", job, "--port", printer.name], stdin=subprocess.DEVNULL, stderr=stderr)
+        self.wait_for(lambda: b"M190" in printer.heard, "it heats")
+        termios.tcflow(printer.slave, termios.TCOOFF)
+        begun = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: "cancelling" in errors.read_text(), "it cancels")
+        child.send_signal(signal.SIGINT)
+        self.expect_left(child, begun, lambda: errors.read_text())
 
     def test_killed_send_leaves_what_was_acknowledged(self):
         """This printer takes exactly 23 lines of the program and then says nothing."""
