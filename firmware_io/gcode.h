@@ -61,6 +61,7 @@ enum class GcodeReplyKind {
   kPosition,      // "X:… Y:… Z:…", what M114 answers
   kPrompt,        // text: the question
   kPromptButton,  // text: one of its answers
+  kPromptEnd,     // it asks no longer
   kPause,         // asks its host to pause; `waiting` where it stands still already
   kResume,        // goes on after a pause
   kCancel,        // the print was cancelled at its panel

@@ -117,8 +117,7 @@ void GcodeStream::handle_busy(const GcodeReply& reply) {
 
 void GcodeStream::watch_silence() {
   const double now = channel_.now_s();
-  const bool stands_still = paused_ && !parks_ && !between_;
-  if (stands_still) alive_at_s_ = now;  // for as long as the machine likes
+  if (stands_still() && !between_) alive_at_s_ = now;  // for as long as the machine likes
   const bool may_be_long =
       is_long(command(last_)) && !busy_seen_ && !cancelling_ && complaint_.empty();
   const double limit = std::max(options_.timeout_s * (may_be_long ? kLongFactor : 1.0),

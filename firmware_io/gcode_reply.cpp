@@ -179,6 +179,7 @@ void read_action(std::string_view action, GcodeReply& reply) {
   const std::string_view word = action.substr(0, action.find(' '));
   reply.text = trim(action.substr(word.size()));
   if (word == kBegin) reply.kind = GcodeReplyKind::kPrompt;
+  if (word == "prompt_end") reply.kind = GcodeReplyKind::kPromptEnd;
   if (one_of(word, kButtons)) reply.kind = GcodeReplyKind::kPromptButton;
   if (word == "pause" || word == "paused") reply.kind = GcodeReplyKind::kPause;
   if (word == "resume" || word == "resumed") reply.kind = GcodeReplyKind::kResume;

@@ -26,11 +26,21 @@ void GcodeStream::obey_requests() {
   if (control_.cancelled() && !cancelling_) begin_cancel();
   if (const auto wanted = control_.take_pause_request()) {
     parks_ = *wanted && !paused_ ? true : parks_;
+    if (!*wanted || !paused_) pause_text_.clear();
     paused_ = *wanted;
   }
   const int answer = control_.take_answer();
   if (answer < 0 || cancelling_) return;
   send_raw(abilities_.emergency_parser ? "M876 S" + std::to_string(answer) : std::string("M108"));
+  if (between_) close_question();
+}
+
+bool GcodeStream::stands_still() const { return between_ || (paused_ && !parks_); }
+
+void GcodeStream::close_question() {
+  prompt_.clear();
+  choices_.clear();
+  if (stands_still()) show_pause();
 }
 
 // Only an M112 of its own is obeyed before its turn; the empty line ends whatever half line is in
@@ -51,13 +61,17 @@ void GcodeStream::handle_action(const GcodeReply& reply) {
     case GcodeReplyKind::kPromptButton:
       choices_.push_back(reply.text);
       return reporter_.state(PrintState::kWaiting, prompt_, choices_);
+    case GcodeReplyKind::kPromptEnd:
+      return close_question();
     case GcodeReplyKind::kPause:
       if (!paused_) parks_ = !reply.waiting;
       paused_ = true;
-      if (reply.waiting) reporter_.state(PrintState::kPaused, "at the printer");
-      return;
+      if (!reply.waiting) return;
+      pause_text_ = "at the printer";
+      return show_pause();
     case GcodeReplyKind::kResume:
       paused_ = false;
+      pause_text_.clear();
       return show_state();
     case GcodeReplyKind::kCancel:
       cancelled_at_printer_ = true;
@@ -70,7 +84,7 @@ void GcodeStream::handle_action(const GcodeReply& reply) {
 // No line of the program is given until the pause ends. Returns the number of the next one.
 std::size_t GcodeStream::pause(std::size_t number) {
   between_ = true;
-  reporter_.state(PrintState::kPaused, parks_ ? std::exchange(pause_text_, {}) : "at the printer");
+  show_pause();
   const bool parked = std::exchange(parks_, false);
   std::vector<std::string> resume = gcode_lines(options_.resume_gcode);
   if (!resume.empty() || !options_.pause_gcode.empty())
@@ -82,17 +96,31 @@ std::size_t GcodeStream::pause(std::size_t number) {
   }
   stand_still();
   if (parked && !cancelling_) number = execute_between(number, resume);
+  pause_text_.clear();
   between_ = false;
   return number;
 }
 
-// Listens, asks for the temperatures, and never gives up: a pause may take as long as it likes.
+// A question with answers stays until it is answered, though the printer stands paused.
+void GcodeStream::show_pause() {
+  if (!choices_.empty()) return reporter_.state(PrintState::kWaiting, prompt_, choices_);
+  std::string text = pause_text_;
+  if (!prompt_.empty()) text += (text.empty() ? "" : ": ") + prompt_;
+  reporter_.state(PrintState::kPaused, text);
+}
+
+// Listens, asks for the temperatures, and never gives up: a pause may take as long as it likes. A
+// printer that is busy with a pause of its own reads nothing yet, and what it does not read would
+// pile up.
 void GcodeStream::stand_still() {
   double asked_at_s = channel_.now_s();
   while (paused_ && !cancelling_) {
     obey_requests();
     reporter_.tick();
-    if (channel_.now_s() - asked_at_s >= kPoll_s) {
+    const double now = channel_.now_s();
+    const bool answered = unanswered_.empty();
+    if (now - (answered ? asked_at_s : std::max(asked_at_s, busy_at_s_)) >=
+        (answered ? kPoll_s : std::max(kPoll_s, options_.timeout_s))) {
       unanswered_.clear();
       ask_for_proof();
       asked_at_s = channel_.now_s();

@@ -131,8 +131,7 @@ void GcodeStream::give(std::size_t number) {
   alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
   patience_factor_ = 1;
   heat_.begin(command(number));
-  prompt_.clear();
-  choices_.clear();
+  if (!between_) prompt_.clear(), choices_.clear();
   show_state();
 }
 

@@ -102,6 +102,9 @@ class GcodeStream {
   [[noreturn]] void stop_at_once();
   void handle_action(const GcodeReply& reply);
   std::size_t pause(std::size_t number);
+  bool stands_still() const;
+  void close_question();
+  void show_pause();
   void stand_still();
   std::size_t execute_between(std::size_t number, const std::vector<std::string>& lines);
 
@@ -137,7 +140,7 @@ class GcodeStream {
 
   bool paused_ = false;     // wanted; begins between two lines
   bool parks_ = false;      // the pause text is executed
-  std::string pause_text_;  // why, where nobody asked for it
+  std::string pause_text_;  // why, where no person asked for it
   bool between_ = false;    // in the lines around a pause
 
   // of the lines that are being exchanged

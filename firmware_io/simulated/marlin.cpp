@@ -29,6 +29,11 @@ void Marlin::advance(double now_s) {
       finish();
       continue;
     }
+    if (!injected_.empty()) {
+      is_injected_ = true;
+      execute(std::exchange(injected_, {}), now_s);
+      continue;
+    }
     if (queue_.empty()) return report_idle(now_s);
     const Queued next = queue_.front();
     queue_.pop_front();
@@ -103,6 +108,12 @@ void Marlin::fail_fatally() {
 
 void Marlin::refuse_move() { refuses_move_ = true; }
 
+void Marlin::run_out() {
+  ask("FilamentRunout T0", {});
+  tell_host("paused filament_runout 0");
+  injected_ = "M600";
+}
+
 void Marlin::tell_host(const std::string& action) {
   say((traits_.comment_blank ? "// action:" : "//action:") + action);
 }
@@ -172,9 +183,13 @@ void Marlin::keep_alive(double now_s) {
 
 void Marlin::finish() {
   if (std::exchange(says_position_, false)) say(position());
-  say(reply_ == "ok" && traits_.advanced_ok ? advanced_ok() : reply_);
-  constexpr std::size_t kDoubled = 5;
-  if (traits_.doubled_ok && ++oks_ % kDoubled == 0) say(reply_);
+  if (std::exchange(is_injected_, false)) {
+    tell_host("resumed");
+  } else {
+    say(reply_ == "ok" && traits_.advanced_ok ? advanced_ok() : reply_);
+    constexpr std::size_t kDoubled = 5;
+    if (traits_.doubled_ok && ++oks_ % kDoubled == 0) say(reply_);
+  }
   reply_ = "ok";
   executing_ = false;
   skip_wait_ = false;

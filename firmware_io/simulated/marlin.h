@@ -31,6 +31,7 @@ class Marlin : public Firmware {
   void stop();          // Marlin's "!! STOP called": it obeys, but moves no more
   void fail_fatally();  // as Repetier's firmware says it; it goes on answering
   void refuse_move();   // the next one, as Klipper does
+  void run_out();       // of filament: it changes it by itself, as by an M600 that nobody sent
   void tell_host(const std::string& action);  // "pause", "resume", "cancel": pressed at its panel
 
  private:
@@ -87,6 +88,7 @@ class Marlin : public Firmware {
   std::string received_;
   std::string emergency_line_;
   std::deque<Queued> queue_;
+  std::string injected_;  // a command of its own, which goes first and gets no ok
   long last_number_ = 0;
   double next_idle_s_ = 0;
 
@@ -94,6 +96,7 @@ class Marlin : public Firmware {
   Blocked blocked_ = Blocked::kNo;
   bool executing_ = false;
   std::optional<long> number_;  // of its line
+  bool is_injected_ = false;
   std::string reply_ = "ok";
   double blocked_until_s_ = 0;
   double next_busy_s_ = 0;

@@ -1,0 +1,103 @@
+// What becomes of the questions that a printer asks while it stands paused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "firmware_io/simulated/marlin.h"
+#include "sim/programs.h"
+#include "sim/scenario.h"
+
+namespace packmerger::test {
+namespace {
+
+using simulated::Marlin;
+using simulated::Pace;
+using ::testing::HasSubstr;
+
+constexpr double kAsks_s = 100;  // in the middle of the moves
+constexpr double kAnswered_s = kAsks_s + 3600;
+
+// A print whose printer asks after a while, and whose people come an hour later.
+class Questions : public ::testing::Test {
+ protected:
+  void print(const std::function<void()>& asks, const std::function<void()>& people) {
+    bool asked = false;
+    bool came = false;
+    port.on_step = [&](std::size_t) {
+      if (port.now_s() > kAsks_s && !std::exchange(asked, true)) asks();
+      if (port.now_s() > kAnswered_s && !std::exchange(came, true)) people();
+    };
+    const auto failure =
+        test::print(port, true, joined(program), control, [&](const PrintReport& report) {
+          last = report;
+          if (report.text == "Paused") control.answer(1);  // no more is to be purged
+        });
+    ASSERT_FALSE(failure) << failure->what();
+    EXPECT_TRUE(came);
+    EXPECT_EQ(only(port.executed(), program), program);
+  }
+
+  std::size_t temperatures_asked() const {
+    std::size_t times = 0;
+    for (std::size_t at = 0; (at = port.sent.find("M105\n", at)) != std::string::npos; ++at)
+      ++times;
+    return times;
+  }
+
+  Marlin firmware{Pace{1, false}};
+  FaultyPort port{firmware};
+  PrintControl control;
+  PrintReport last;
+  std::vector<std::string> program = gcode_program(3000);
+};
+
+TEST_F(Questions, AreNotHiddenByAPause) {
+  print(
+      [&] {
+        firmware.tell_host("prompt_begin Heater Timeout");
+        firmware.tell_host("prompt_button Reheat");
+        firmware.tell_host("prompt_show");
+        firmware.tell_host("paused");
+      },
+      [&] {
+        EXPECT_EQ(last.state, PrintState::kWaiting);
+        EXPECT_EQ(last.text, "Heater Timeout");
+        EXPECT_EQ(last.choices, std::vector<std::string>{"Reheat"});
+        control.answer(0);
+        firmware.tell_host("resumed");
+      });
+  EXPECT_THAT(port.sent, HasSubstr("M876 S0\n"));
+}
+
+// Without answers to choose from the printer stands paused and says why.
+TEST_F(Questions, WithoutAnswersAreToldWithThePause) {
+  print(
+      [&] {
+        firmware.tell_host("prompt_begin Filament Runout");
+        firmware.tell_host("prompt_show");
+        firmware.tell_host("pause");
+      },
+      [&] {
+        EXPECT_EQ(last.state, PrintState::kPaused);
+        EXPECT_EQ(last.text, "Filament Runout");
+        firmware.tell_host("resume");
+      });
+}
+
+// The filament has run out: the printer changes it by itself, says that it is busy, and reads
+// nothing of what it is sent.
+TEST_F(Questions, WhatABusyPrinterDoesNotReadDoesNotPileUp) {
+  std::size_t asked_before = 0;
+  print(
+      [&] {
+        firmware.run_out();
+        asked_before = temperatures_asked();
+      },
+      [&] {
+        EXPECT_EQ(last.text, "Nozzle Parked");
+        EXPECT_LE(temperatures_asked() - asked_before, 2u);
+        control.answer(0);
+      });
+}
+
+}  // namespace
+}  // namespace packmerger::test
