@@ -1,10 +1,10 @@
 #include "daemon/api.h"
 
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "daemon/job_view.h"
+#include "daemon/json_values.h"
 #include "daemon/waits.h"
 #include "daemon/web.h"
 
@@ -16,7 +16,7 @@ using Verb = json (*)(Foreman&, const json&);
 using Starts = std::optional<JobRecord> (*)(const Foreman&, const json&);
 using KeyVerb = json (*)(const WebConfig&, KeyRing&, const json&);
 
-constexpr int kDefaultJobs = 100;
+constexpr auto kDefaultJobs = static_cast<std::int64_t>(kLastEnded);
 constexpr int kMostJobs = 1000;
 constexpr int kMostChoices = 99;
 constexpr std::string_view kDone = R"({"ok":true,"result":)";  // a reply's beginning
@@ -50,8 +50,7 @@ json list_jobs(Foreman& foreman, const json& request) {
   const std::int64_t limit = whole_number(request, "limit", kDefaultJobs);
   if (limit < 1 || limit > kMostJobs) not_understood("limit must be from 1 to 1000");
   const bool is_first = !request.contains("before");
-  const std::int64_t before =
-      whole_number(request, "before", std::numeric_limits<std::int64_t>::max());
+  const std::int64_t before = whole_number(request, "before", JobStore::kFromTheLast);
   if (before < 1) not_understood("before must be a job's id");
   json jobs = json::array();
   const auto& open = foreman.store().open_jobs();
@@ -228,10 +227,6 @@ Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
   return {result};
 }
 
-std::string text_of(const json& view) {
-  return view.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
 template <typename Work>
 Reply tried(const Work& work) {
   try {
@@ -246,8 +241,8 @@ Reply tried(const Work& work) {
 template <typename Work>
 std::string answered(const Work& work) {
   const Reply reply = tried(work);
-  if (reply.done) return std::string(kDone) + text_of(reply.body) + "}";
-  return text_of({{"ok", false}, {"error", reply.body}});
+  if (reply.done) return reply_with(json_text(reply.body));
+  return json_text({{"ok", false}, {"error", reply.body}});
 }
 
 }  // namespace
@@ -258,6 +253,10 @@ std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request) {
 
 std::string answer_upload(Foreman& foreman, const UploadedJob& upload) {
   return answered([&] { return Reply{job_view(foreman, foreman.uploaded(upload))}; });
+}
+
+std::string reply_with(std::string_view result) {
+  return std::string(kDone).append(result).append("}");
 }
 
 std::optional<std::string_view> result_in(std::string_view reply) {

@@ -19,6 +19,9 @@ std::string answer(Foreman& foreman, KeyRing& keys, std::string_view request);
 // The same for a file that came over the web: the job that it became.
 std::string answer_upload(Foreman& foreman, const UploadedJob& upload);
 
+// A reply that tells this result, which is JSON text.
+std::string reply_with(std::string_view result);
+
 // The result within either reply, as JSON text; nothing where it tells an error. Refers to `reply`.
 std::optional<std::string_view> result_in(std::string_view reply);
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/names.h"
 #include "daemon/job_folder.h"
+#include "daemon/json_values.h"
 #include "daemon/move_file.h"
 
 namespace packmerger {
@@ -65,7 +66,7 @@ std::string compared_estimates(std::string_view out) {
   if (!all.is_object() || all.size() != 1) refuse("the comparison names no printer");
   const json& ways = *all.begin();
   check_estimates(ways);
-  return ways.dump(-1, ' ', false, json::error_handler_t::replace);
+  return json_text(ways);
 }
 
 std::int64_t whole_number_in(const json& object, const char* key, std::int64_t least,

@@ -4,6 +4,7 @@
 #include "base/names.h"
 #include "daemon/choose_printer.h"
 #include "daemon/foreman.h"
+#include "daemon/json_values.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 
@@ -109,8 +110,7 @@ void Foreman::propose(JobRecord job, const PrinterConfig& wish,
                       const std::vector<PrinterOffer>& offers) {
   const Prefer prefer = wish.prefer.value_or(Prefer::kCheapest);
   const std::optional<std::size_t> best = best_offer(offers, prefer);
-  job.choice = choice_view(offers, prefer, best)
-                   .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  job.choice = json_text(choice_view(offers, prefer, best));
   if (!best)
     return end(job, JobState::kFailed,
                "It can be printed by none of the printers: " + reasons_of(offers),

@@ -50,7 +50,8 @@ FrontDesk::FrontDesk(const DaemonConfig& config, Foreman& foreman, KeyRing& keys
       foreman_(foreman),
       keys_(keys),
       log_(std::move(log)),
-      machine_(machine_id()) {
+      machine_(machine_id()),
+      board_(foreman) {
   std::error_code ignored;
   fs::remove_all(uploads_folder(config), ignored);
 }
@@ -153,7 +154,7 @@ void FrontDesk::publish(double now_s) {
   const bool at_once = events_.take_begun();
   if ((!at_once && now_s - published_s_ < kPublishEvery_s) || !events_.watched()) return;
   published_s_ = now_s;
-  events_.publish(answer(foreman_, keys_, R"({"verb": "state"})"));
+  events_.publish(board_.look(), [this] { return board_.state(); });
 }
 
 }  // namespace packmerger

@@ -12,6 +12,7 @@
 
 #include "daemon/foreman.h"
 #include "daemon/key_ring.h"
+#include "daemon/state_board.h"
 #include "daemon/web.h"
 #include "notify/mdns.h"
 
@@ -50,6 +51,7 @@ class FrontDesk {
   Log log_;
   const std::string machine_;  // for the uuids that are announced
   WebQuestions questions_;
+  StateBoard board_;
   WebEvents events_;
   Queue<std::string> lines_;  // for the log, from other threads
   std::unique_ptr<Web> web_;

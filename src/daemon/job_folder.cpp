@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "daemon/child_json.h"
+#include "daemon/json_values.h"
 
 namespace packmerger {
 namespace {
@@ -108,7 +109,7 @@ PreparedJob read_prepared(const fs::path& folder) {
       job.predicted_s = estimate->value("time_s", 0.0);
       job.predicted_by = estimate->value("source", "");
     }
-    job.estimates = report.at("estimates").dump(-1, ' ', false, json::error_handler_t::replace);
+    job.estimates = json_text(report.at("estimates"));
     return job;
   } catch (const json::exception& error) {
     throw Error(Fault::kBadInput,

@@ -151,8 +151,7 @@ std::string_view kind_name(const JobRecord& job) {
 
 }  // namespace
 
-json job_view(const Foreman& foreman, const JobRecord& job) {
-  const std::string_view waits = waits_name(waits_for(foreman, job));
+json recorded_view(const JobRecord& job) {
   return {
       {"id", job.id},
       {"printer", job.printer},
@@ -161,13 +160,8 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"name", job.name},
       {"kind", kind_name(job)},
       {"sha256", job.sha256},
-      {"same_as", or_null(foreman.store().same_bytes_before(job))},
       {"state", state_name(job.state)},
       {"held", job.held},
-      {"waits_for", waits.empty() ? json() : json(waits)},
-      {"status", status_text(foreman, job)},
-      {"progress",
-       progress_view(job, foreman.live(job.id), unit_of(foreman.config().printer(job.printer)))},
       {"trays", job.trays},
       {"tray", job.next_tray},
       {"settings", job.with_settings ? json(settings_beside(job.name).string()) : json()},
@@ -182,18 +176,33 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
       {"predicted_s", or_null(job.predicted_s)},
       {"printed_s", or_null(job.printed_s)},
       {"paused_s", or_null(job.paused_s)},
-      {"correction",
-       correction_view(foreman.correction(job.printer, job.predicted_by), job.predicted_by)},
       {"reason", job.reason},
       {"hint", job.hint},
       {"told", job.told_total == 0 ? json() : json{{"done", job.told}, {"total", job.told_total}}},
-      {"folder", job.trays > 0 && !foreman.cleaner().is_gone(job) ? job.folder : ""},
       {"deleted_s", or_null(job.deleted_s)},
       {"filed", job.filing_done ? job.filed : ""},
       {"again_of", or_null(job.again_of)},
       {"received_s", or_null(job.received_s)},
       {"sending_s", or_null(job.sending_s)},
       {"ended_s", or_null(job.ended_s)}};
+}
+
+json passing_view(const Foreman& foreman, const JobRecord& job) {
+  const std::string_view waits = waits_name(waits_for(foreman, job));
+  return {{"same_as", or_null(foreman.store().same_bytes_before(job))},
+          {"waits_for", waits.empty() ? json() : json(waits)},
+          {"status", status_text(foreman, job)},
+          {"progress", progress_view(job, foreman.live(job.id),
+                                     unit_of(foreman.config().printer(job.printer)))},
+          {"correction",
+           correction_view(foreman.correction(job.printer, job.predicted_by), job.predicted_by)},
+          {"folder", job.trays > 0 && !foreman.cleaner().is_gone(job) ? job.folder : ""}};
+}
+
+json job_view(const Foreman& foreman, const JobRecord& job) {
+  json view = recorded_view(job);
+  view.update(passing_view(foreman, job));
+  return view;
 }
 
 json job_view_with_history(const Foreman& foreman, const JobRecord& job) {

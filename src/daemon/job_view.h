@@ -12,6 +12,9 @@ namespace packmerger {
 
 // What `jobs list` shows, and with history what `jobs show` does; docs/DAEMON.md names the keys.
 nlohmann::json job_view(const Foreman& foreman, const JobRecord& job);
+// Its two halves: what the record alone tells, and what also changes while the record stays.
+nlohmann::json recorded_view(const JobRecord& job);
+nlohmann::json passing_view(const Foreman& foreman, const JobRecord& job);
 nlohmann::json job_view_with_history(const Foreman& foreman, const JobRecord& job);
 nlohmann::json printer_view(const Foreman& foreman, const PrinterConfig& printer);
 // The disk of the state folder, and which jobs' folders are deleted.

@@ -1,4 +1,4 @@
-// Small turns from what the store keeps to JSON, where "nothing" is null.
+// Small turns between what the store keeps and JSON, where "nothing" is null.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,11 @@
 #include <string>
 
 namespace packmerger {
+
+// On one line; bytes that are no UTF-8 are replaced.
+inline std::string json_text(const nlohmann::json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 // JSON text; null where it holds nothing of that type.
 inline nlohmann::json parsed_or_null(const std::string& text, nlohmann::json::value_t type) {

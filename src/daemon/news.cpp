@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "daemon/job_view.h"
+#include "daemon/json_values.h"
 
 namespace packmerger {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kLookEvery_s = 0.5;  // at the printers
-
-std::string text_of(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
-}
 
 }  // namespace
 
@@ -71,10 +68,10 @@ void News::follow_settings() {
 void News::tell_jobs() {
   for (const Line& line : std::exchange(jobs_, {}))
     tell({"printers/" + line.job.printer + "/job",
-          text_of({{"event", "job"},
-                   {"at_s", line.at_s},
-                   {"note", line.note},
-                   {"job", job_view(foreman_, line.job)}})});
+          json_text({{"event", "job"},
+                     {"at_s", line.at_s},
+                     {"note", line.note},
+                     {"job", job_view(foreman_, line.job)}})});
 }
 
 // How a print gets on is no change of state: pages watch that by /api/v1/events.
@@ -85,12 +82,12 @@ void News::tell_printers() {
     json& print = view["print"];
     view["stage"] = print.is_object() ? print["stage"] : json();
     view.erase("print");
-    std::string state = text_of(view);
+    std::string state = json_text(view);
     std::string& told = printers_[printer.name];
     if (told == state) continue;
     told = std::move(state);
     tell({"printers/" + printer.name,
-          text_of({{"event", "printer"}, {"at_s", wall_clock_s()}, {"printer", view}})});
+          json_text({{"event", "printer"}, {"at_s", wall_clock_s()}, {"printer", view}})});
   }
 }
 

@@ -10,6 +10,7 @@
 #include "daemon/doors/door.h"
 #include "daemon/doors/doors.h"
 #include "daemon/job_file.h"
+#include "daemon/json_values.h"
 #include "daemon/web_routes.h"
 
 namespace packmerger {
@@ -122,7 +123,7 @@ HttpReply Web::routed(HttpRequest& request) {
       if (route.verb.starts_with("jobs.") && !route.id.empty())
         verb["id"] = number(route.id).value_or(0);
       if (route.verb.starts_with("printers.") && !route.id.empty()) verb["name"] = route.id;
-      return desk_.ask(verb.dump(-1, ' ', false, json::error_handler_t::replace));
+      return desk_.ask(json_text(verb));
     }
     case WebTarget::kUpload:
       return upload(request);
@@ -202,7 +203,11 @@ HttpReply Web::look(const HttpRequest& request) {
 HttpReply Web::events(const HttpRequest& request) {
   HttpReply reply;
   reply.type = "text/event-stream";
-  reply.next = events_.stream();
+  const auto deltas = request.query.find("deltas");
+  if (deltas != request.query.end() && deltas->second == "1")
+    reply.next = events_.changes(request.header("Last-Event-ID"));
+  else
+    reply.next = events_.stream();
   if (!reply.next)
     return web_error(503, Fault::kBusy, "Too many pages watch already", "Close one and try again.");
   if (const std::string key(key_of(request)); !key.empty())

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "daemon/json_values.h"
 
 namespace packmerger {
 namespace {
@@ -49,7 +50,7 @@ HttpReply web_error(int status, Fault fault, const std::string& what, const std:
       {"error", {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}}}};
   HttpReply reply;
   reply.status = status;
-  reply.body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  reply.body = json_text(body) + "\n";
   return reply;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "job/job_schema.h"
+#include "job/jobs_at_hand.h"
 #include "job/sqlite.h"
 
 namespace packmerger {
@@ -13,25 +14,12 @@ using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
 
-namespace {
-
-bool is_open(const JobRecord& job) { return job.ended_s == 0 || !job.filing_done; }
-
-}  // namespace
-
 struct JobStore::Database {
   Connection connection;
   Listener listener;
-  std::map<std::int64_t, JobRecord> open;
+  JobsAtHand jobs;
   std::map<std::string, PrinterRecord> printers;
   explicit Database(const std::filesystem::path& file) : connection(file) {}
-
-  void written(const JobRecord& job) {
-    if (is_open(job))
-      open.insert_or_assign(job.id, job);
-    else
-      open.erase(job.id);
-  }
 };
 
 namespace {
@@ -175,8 +163,14 @@ JobStore::JobStore(const std::filesystem::path& file)
   Connection& connection = database_->connection;
   connection.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
   bring_up_to_date(connection, file);
-  Statement rows(connection, select("WHERE ended_s = 0 OR filing_done = 0"));
-  while (rows.step()) database_->written(read_job(rows));
+  const auto take = [&](Statement& rows) {
+    for (const JobRecord& job : read_jobs(rows)) database_->jobs.written(job, job.sha256);
+  };
+  Statement open(connection, select("WHERE ended_s = 0 OR filing_done = 0"));
+  take(open);
+  Statement ended(connection, select("WHERE ended_s > 0 ORDER BY ended_s DESC, id DESC LIMIT ?"));
+  ended.bind(static_cast<std::int64_t>(kLastEnded));
+  take(ended);
   Statement printers(connection, "SELECT name, bed_clear, paused FROM printer");
   while (printers.step()) {
     PrinterRecord printer{printers.text()};
@@ -200,7 +194,7 @@ JobRecord JobStore::add(JobRecord job) {
   job.id = sqlite3_last_insert_rowid(connection.get());
   write_event(connection, job, "");
   transaction.commit();
-  database_->written(job);
+  database_->jobs.written(job, "");
   if (database_->listener) database_->listener(job, "");
   return job;
 }
@@ -220,7 +214,7 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
   if (is_told) write_event(connection, job, note);
   if (printer != nullptr) write_printer(connection, *printer);
   transaction.commit();
-  database_->written(job);
+  database_->jobs.written(job, before->sha256);
   if (printer != nullptr) database_->printers.insert_or_assign(printer->name, *printer);
   if (is_told && database_->listener) database_->listener(job, note);
 }
@@ -230,11 +224,12 @@ void JobStore::listen(Listener listener) { database_->listener = std::move(liste
 void JobStore::forget(std::int64_t id) {
   Connection& connection = database_->connection;
   Transaction transaction(connection);
+  const std::optional<JobRecord> job = find(id);
   Statement statement(connection, "DELETE FROM job WHERE id = ? AND state = 'claiming'");
   statement.bind(id).finish();
   const bool forgotten = sqlite3_changes(connection.get()) > 0;
   transaction.commit();
-  if (forgotten) database_->open.erase(id);
+  if (forgotten && job) database_->jobs.forgotten(*job);
 }
 
 std::optional<JobRecord> JobStore::find(std::int64_t id) const {
@@ -243,9 +238,20 @@ std::optional<JobRecord> JobStore::find(std::int64_t id) const {
   return read_job(row);
 }
 
-const std::map<std::int64_t, JobRecord>& JobStore::open_jobs() const { return database_->open; }
+const std::map<std::int64_t, JobRecord>& JobStore::open_jobs() const {
+  return database_->jobs.open();
+}
+
+const EndedJobs& JobStore::ended_jobs() const { return database_->jobs.ended(); }
 
 std::vector<JobRecord> JobStore::newest_ended(int limit, std::int64_t before) const {
+  const EndedJobs& at_hand = ended_jobs();
+  if (before == kFromTheLast && limit <= static_cast<int>(kLastEnded)) {
+    std::vector<JobRecord> jobs;
+    for (auto job = at_hand.begin(); job != at_hand.end() && limit > 0; ++job, --limit)
+      jobs.push_back(job->second);
+    return jobs;
+  }
   const std::optional<JobRecord> last = find(before);
   const bool is_ended = last && last->ended_s > 0;
   Statement rows(database_->connection,
@@ -307,7 +313,11 @@ std::int64_t JobStore::same_bytes(const JobRecord& job) const {
 }
 
 std::int64_t JobStore::same_bytes_before(const JobRecord& job) const {
-  return newest_alike(database_->connection, job, "id < ?");
+  JobsAtHand& jobs = database_->jobs;
+  if (const std::optional<std::int64_t> known = jobs.same_before(job)) return *known;
+  const std::int64_t same = newest_alike(database_->connection, job, "id < ?");
+  if (jobs.has(job)) jobs.remember(job, same);
+  return same;
 }
 
 std::vector<JobEvent> JobStore::history(std::int64_t id) const {

@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "job/correction.h"
@@ -62,11 +63,19 @@ struct JobRecord {
   std::string predicted_by;     // that estimate's source, as job.json has it
   double printed_s = 0;         // by the trays that are printed, pauses left out; 0: not known
   double paused_s = 0;
-  double received_s = 0;  // Unix time
-  double sending_s = 0;   // when the first tray began; 0: not yet
-  double ended_s = 0;     // 0: not yet
-  double deleted_s = 0;   // when its folder was deleted; 0: it was not
+  double received_s = 0;      // Unix time
+  double sending_s = 0;       // when the first tray began; 0: not yet
+  double ended_s = 0;         // 0: not yet
+  double deleted_s = 0;       // when its folder was deleted; 0: it was not
+  std::uint64_t edition = 0;  // which one this is of what the store has at hand: every write makes
+                              // another, so that what is made of a record need not be made again.
+                              // 0: read from the database, which does not keep it
 };
+
+// So many of the jobs that have ended are at hand in memory, the one that ended last first.
+inline constexpr std::size_t kLastEnded = 100;
+using EndedJobs =
+    std::map<std::pair<double, std::int64_t>, JobRecord, std::greater<>>;  // by ended_s and id
 
 struct PrinterRecord {
   std::string name;
@@ -108,10 +117,12 @@ class JobStore {
   // Jobs that have not ended, and ended ones whose file is not yet filed, by id. They are at hand
   // in memory, as the database has them; a write changes them.
   const std::map<std::int64_t, JobRecord>& open_jobs() const;
+  // Those that ended last, kLastEnded at most, in the same way.
+  const EndedJobs& ended_jobs() const;
   // At most `limit` jobs that have ended, the one that ended last first; with `before` only those
   // that ended before that job, or, where it has not ended, have lower ids.
-  std::vector<JobRecord> newest_ended(
-      int limit, std::int64_t before = std::numeric_limits<std::int64_t>::max()) const;
+  std::vector<JobRecord> newest_ended(int limit, std::int64_t before = kFromTheLast) const;
+  static constexpr std::int64_t kFromTheLast = std::numeric_limits<std::int64_t>::max();
   // Ended and filed jobs whose folders are still there and that ended at until_s or before, with
   // every job that shares their folder; the one that ended first comes first.
   std::vector<JobRecord> deletable(double until_s, int limit) const;
@@ -125,7 +136,8 @@ class JobStore {
   bool is_empty() const;
   // The newest other job with the same bytes for any printer; 0: none.
   std::int64_t same_bytes(const JobRecord& job) const;
-  // The newest such job that came before this one; 0: none.
+  // The newest such job that came before this one; 0: none. Of a job at hand in memory it is looked
+  // up once, and again only where bytes of jobs changed.
   std::int64_t same_bytes_before(const JobRecord& job) const;
   std::vector<JobEvent> history(std::int64_t id) const;
   // At most `limit` prints that teach how long this printer takes, newest first: done, predicted by

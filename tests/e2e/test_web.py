@@ -109,6 +109,34 @@ class Use(Case):
         self.daemon.ask("POST", "/api/v1/printers/objet/resume")
         connection.close()
 
+    def test_pages_that_ask_for_it_are_told_only_what_changes(self):
+        def events(last_id=None):
+            connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=30)
+            self.addCleanup(connection.close)
+            connection.request("GET", "/api/v1/events?deltas=1", headers={"Last-Event-ID": last_id} if last_id else {})
+            stream, event = connection.getresponse(), {}
+            while line := stream.readline().decode():
+                field, _, value = line.strip().partition(": ")
+                if field:
+                    event[field] = value
+                elif "data" in event:
+                    yield event["event"], event["id"], json.loads(event["data"])
+                    event = {}
+
+        def first_delta(stream):
+            return next(({one["name"]: one["paused"] for one in told["printers"]}, number)
+                        for kind, number, told in stream if kind == "delta" and "printers" in told)
+
+        stream = events()
+        kind, number, told = next(stream)
+        self.assertEqual((kind, told["result"]["printers"][0]["paused"]), ("state", False))
+        self.daemon.ask("POST", "/api/v1/printers/objet/pause")
+        paused, number = first_delta(stream)
+        self.assertEqual(paused, {"objet": True})
+        self.daemon.ask("POST", "/api/v1/printers/objet/resume")
+        self.assertEqual(first_delta(events(number))[0], {"objet": False}, "it goes on without a state")
+        self.assertEqual(next(events("another.1"))[0], "state")
+
     def test_revoked_keys_are_worthless(self):
         key = self.daemon.shell("keys", "add", "guest").stdout.strip()
         self.assertEqual(self.daemon.ask("POST", "/api/v1/printers/objet/resume", key=key)[0], 200)

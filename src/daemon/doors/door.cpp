@@ -1,6 +1,7 @@
 #include "daemon/doors/door.h"
 
 #include "base/error.h"
+#include "daemon/json_values.h"
 
 namespace packmerger {
 namespace {
@@ -33,8 +34,7 @@ HttpReply in_plain_words(HttpReply reply) {
 }
 
 HttpReply door_reply(const json& body, int status) {
-  return {.status = status,
-          .body = body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"};
+  return {.status = status, .body = json_text(body) + "\n"};
 }
 
 json printer_at(const DoorCall& call) {

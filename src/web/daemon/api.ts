@@ -36,7 +36,7 @@ export function refusalOf(status: number, body: string): Refusal {
 export async function request(path: string, init: RequestInit = {}): Promise<Response> {
   let reply: Response;
   try {
-    reply = await fetch(BASE + path, { ...init, headers: keyHeaders() });
+    reply = await fetch(BASE + path, { ...init, headers: { ...init.headers, ...keyHeaders() } });
   } catch (error) {
     if (error instanceof DOMException && error.name === 'AbortError') throw error;
     throw noAnswer();

@@ -1,7 +1,8 @@
 // Keeps the store up to date: one stream of events, begun again whenever it ends.
 import { noAnswer, Refusal, request } from './api';
+import { changed, follows, type Change } from './changes';
 import { parsed } from './shown';
-import { EventReader } from './sse';
+import { EventReader, type ServerEvent } from './sse';
 import { store } from '../store';
 import type { State } from './types';
 
@@ -11,6 +12,8 @@ const LONGEST_WAIT_MS = 8_000;
 let running: AbortController | null = null;
 let again: number | undefined;
 let failures = 0;
+let known: State | null = null;
+let last = '';  // the id of the event that led to it
 
 // Begins, or begins anew with another key.
 export function watch(): void {
@@ -45,7 +48,8 @@ async function listen(): Promise<void> {
 
 async function read(control: AbortController): Promise<void> {
   let guard = setTimeout(() => control.abort(), SILENCE_MS);
-  const reply = await request('events', { signal: control.signal });
+  const headers = last === '' ? {} : { 'Last-Event-ID': last };
+  const reply = await request('events?deltas=1', { signal: control.signal, headers });
   const stream = reply.body?.pipeThrough(new TextDecoderStream()).getReader();
   const events = new EventReader();
   for (;;) {
@@ -53,13 +57,29 @@ async function read(control: AbortController): Promise<void> {
     if (piece === undefined || piece.done) break;
     clearTimeout(guard);
     guard = setTimeout(() => control.abort(), SILENCE_MS);
-    for (const data of events.take(piece.value)) {
-      failures = 0;
-      const { result } = parsed<{ result: State }>(data);
-      store.set({ ...result, link: { kind: 'live' } });
-    }
+    for (const event of events.take(piece.value)) take(event);
+    if (known === null) continue;
+    failures = 0;
+    store.set({ ...known, link: { kind: 'live' } });
   }
   clearTimeout(guard);
+}
+
+// A change that does not follow what is known is none that can be taken: then all is asked for again.
+function take({ name, id, data }: ServerEvent): void {
+  if (name === 'state') {
+    known = parsed<{ result: State }>(data).result;
+  } else if (name === 'delta') {
+    const before = known;
+    const missed = before === null || !follows(id, last);
+    known = null;
+    last = '';
+    if (missed) throw noAnswer();
+    known = changed(before, parsed<Change>(data));
+  } else {
+    return;
+  }
+  last = id;
 }
 
 // A wrong key, also one of too many (429), is not tried again by itself.

@@ -1,18 +1,25 @@
 // Server-sent events from a text stream. EventSource cannot send a key, so the page reads them itself.
 
-// Takes text as it arrives and returns the data of every event that is complete.
+export interface ServerEvent {
+  name: string;
+  id: string;  // '' where it has none
+  data: string;
+}
+
+// Takes text as it arrives and returns every event that is complete.
 export class EventReader {
   private rest = '';
 
-  take(text: string): string[] {
+  take(text: string): ServerEvent[] {
     this.rest += text;
     const blocks = this.rest.split('\n\n');
     this.rest = blocks.pop() ?? '';
-    return blocks.map(dataOf).filter((data) => data !== '');
+    return blocks.map(eventOf).filter(({ data }) => data !== '');
   }
 }
 
-function dataOf(block: string): string {
-  return block.split('\n').filter((line) => line.startsWith('data:'))
-    .map((line) => line.slice(5).trimStart()).join('\n');
+function eventOf(block: string): ServerEvent {
+  const values = (field: string): string[] => block.split('\n').filter((line) => line.startsWith(`${field}:`))
+    .map((line) => line.slice(field.length + 1).trimStart());
+  return { name: values('event').pop() ?? 'message', id: values('id').pop() ?? '', data: values('data').join('\n') };
 }

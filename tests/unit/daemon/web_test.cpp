@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <stdexcept>
 #include <thread>
 
 #include "base/files.h"
@@ -171,16 +173,21 @@ TEST(WebRoutes, OnlyFilesOfAJobFolderAreShown) {
     EXPECT_FALSE(is_job_file(name)) << name;
 }
 
+// What the loop tells when it looked and found the state with this name.
+void look(WebEvents& events, const std::string& change, const std::string& state) {
+  events.publish(change, [&] { return state; });
+}
+
 TEST(WebEvents, TellTheStateNowAndEveryChange) {
   WebEvents events;
   EXPECT_FALSE(events.watched());
-  events.publish("1");
+  look(events, "", "1");
   auto stream = events.stream();
   EXPECT_TRUE(events.watched());
-  std::thread later([&] { events.publish("2"); });
+  std::thread later([&] { look(events, "+", "2"); });
   EXPECT_EQ(stream(), "event: state\ndata: 2\n\n") << "what was published before it began is old";
   later.join();
-  events.publish("3");
+  look(events, "+", "3");
   EXPECT_EQ(stream(), "event: state\ndata: 3\n\n");
   events.close();
   EXPECT_EQ(stream(), std::nullopt);
@@ -191,12 +198,102 @@ TEST(WebEvents, TellTheStateNowAndEveryChange) {
 TEST(WebEvents, AStreamThatBeginsIsToldTheStateAlthoughItIsTheSame) {
   WebEvents events;
   EXPECT_FALSE(events.take_begun());
-  events.publish("1");
+  look(events, "", "1");
   auto stream = events.stream();
   EXPECT_TRUE(events.take_begun());
   EXPECT_FALSE(events.take_begun());
-  events.publish("1");
+  look(events, "", "1");
   EXPECT_EQ(stream(), "event: state\ndata: 1\n\n");
+}
+
+// "event: NAME", its number, and what it tells.
+struct Told {
+  std::string name;
+  std::string id;
+  std::string data;
+};
+std::vector<Told> told(const std::optional<std::string>& text) {
+  std::vector<Told> events;
+  std::istringstream lines(text.value_or(""));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("event: ")) events.push_back({line.substr(7), "", ""});
+    if (line.starts_with("id: ")) events.back().id = line.substr(4);
+    if (line.starts_with("data: ")) events.back().data = line.substr(6);
+  }
+  return events;
+}
+int number_in(const std::string& id) { return std::stoi(id.substr(id.find('.') + 1)); }
+
+TEST(WebEvents, ChangesAreNumberedFromTheStateOn) {
+  WebEvents events;
+  look(events, "a", "1");
+  auto stream = events.changes("");
+  look(events, "b", "2");
+  const auto first = told(stream());
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].name + first[0].data, "state2");
+  look(events, "c", "never asked for");
+  look(events, "", "never asked for");
+  look(events, "d", "never asked for");
+  const auto then = told(stream());
+  ASSERT_EQ(then.size(), 2U);
+  EXPECT_EQ(then[0].name + then[0].data + then[1].data, "deltacd");
+  EXPECT_EQ(number_in(then[0].id), number_in(first[0].id) + 1);
+  EXPECT_EQ(number_in(then[1].id), number_in(first[0].id) + 2);
+}
+
+TEST(WebEvents, TheStateIsMadeForThoseAloneWhoWantIt) {
+  WebEvents events;
+  const auto never = []() -> std::string { throw std::logic_error("made for nobody"); };
+  events.publish("a", never);
+  auto changes = events.changes("");
+  look(events, "b", "2");
+  events.publish("c", never);
+  auto states = events.stream();
+  look(events, "d", "3");
+  EXPECT_EQ(states(), "event: state\ndata: 3\n\n");
+  look(events, "e", "4");
+  EXPECT_EQ(states(), "event: state\ndata: 4\n\n");
+  events.publish("", never);
+  states = nullptr;
+  events.publish("f", never);
+}
+
+TEST(WebEvents, WhoComesBackGoesOnWhereNothingWasMissed) {
+  WebEvents events;
+  auto stream = events.changes("");
+  look(events, "a", "1");
+  const std::string id = told(stream()).at(0).id;
+  stream = nullptr;
+  look(events, "b", "2");
+  stream = events.changes(id);
+  EXPECT_TRUE(told(stream()).empty()) << "it hears at once that it goes on";
+  EXPECT_EQ(told(stream()).at(0).data, "b");
+  for (int i = 0; i < 1000; ++i) look(events, "c", "3");
+  EXPECT_TRUE(told(stream()).empty()) << "too far behind";
+  EXPECT_TRUE(events.take_begun());
+  look(events, "", "4");
+  const Told state = told(stream()).at(0);
+  EXPECT_EQ(state.name + state.data, "state4");
+}
+
+TEST(WebEvents, AnIdOfAnotherDaemonOrOfNobodyBeginsWithTheState) {
+  WebEvents other;
+  auto before = other.changes("");
+  look(other, "a", "1");
+  const std::string foreign = told(before()).at(0).id;
+  WebEvents events;
+  for (const std::string& id : {foreign, std::string("7"), std::string("x.1"), foreign + "9"}) {
+    auto stream = events.changes(id);
+    look(events, "b", "2");
+    EXPECT_EQ(told(stream()).at(0).name, "state") << id;
+  }
+  auto stream = events.changes("");
+  look(events, "c", "3");
+  const std::string own = told(stream()).at(0).id;
+  auto later = events.changes(own + "0");
+  look(events, "d", "4");
+  EXPECT_EQ(told(later()).at(0).name, "state") << "a number that was not reached yet";
 }
 
 TEST(WebEvents, AreForSoManyPagesAtATime) {

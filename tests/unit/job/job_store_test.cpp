@@ -305,6 +305,61 @@ TEST(JobStore, RecognisesTheSameBytes) {
   EXPECT_EQ(store.same_bytes(third), 0) << "an unknown hash equals nothing";
 }
 
+TEST(JobStore, TheSameBytesAreFoundWheneverTheyBecomeKnown) {
+  const TemporaryFolder folder;
+  JobStore store(folder.path() / "jobs.sqlite");
+  std::vector<JobRecord> jobs;
+  for (int i = 0; i < 3; ++i) jobs.push_back(store.add(sample()));
+  const auto hash = [&](std::size_t i, char letter) {
+    jobs[i].sha256 = std::string(64, letter);
+    store.save(jobs[i]);
+  };
+  const auto before_last = [&] { return store.same_bytes_before(jobs[2]); };
+  hash(2, 'a');
+  EXPECT_EQ(before_last(), 0);
+  hash(0, 'a');
+  EXPECT_EQ(before_last(), 1);
+  hash(1, 'a');
+  EXPECT_EQ(before_last(), 2);
+  store.forget(jobs[1].id);
+  EXPECT_EQ(before_last(), 1);
+  hash(0, 'b');
+  EXPECT_EQ(before_last(), 0);
+  hash(2, 'b');
+  EXPECT_EQ(before_last(), 1);
+}
+
+TEST(JobStore, TheLastEndedAreAtHandAsTheDatabaseHasThem) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "jobs.sqlite";
+  const auto ids = [](const JobStore& store) {
+    std::vector<std::int64_t> found;
+    for (const auto& [key, job] : store.ended_jobs()) found.push_back(job.id);
+    return found;
+  };
+  JobStore store(file);
+  for (int i = 0; i < static_cast<int>(kLastEnded) + 5; ++i) {
+    JobRecord job = store.add(sample());
+    job.state = JobState::kFailed;
+    job.ended_s = 1000 + i % 7;
+    store.save(job);
+    const std::uint64_t edition = store.open_jobs().at(job.id).edition;
+    job.filing_done = i % 2 == 0;
+    store.save(job);
+    EXPECT_NE(edition, 0U);
+    if (!job.filing_done) {
+      EXPECT_GT(store.open_jobs().at(job.id).edition, edition);
+    }
+  }
+  EXPECT_EQ(ids(store).size(), kLastEnded);
+  std::vector<std::int64_t> asked;
+  for (const JobRecord& job : store.newest_ended(static_cast<int>(kLastEnded) + 1))
+    asked.push_back(job.id);
+  asked.pop_back();
+  EXPECT_EQ(ids(store), asked);
+  EXPECT_EQ(ids(JobStore(file)), asked);
+}
+
 TEST(JobStore, JobAndBedAreWrittenInOneStep) {
   const TemporaryFolder folder;
   JobStore store(folder.path() / "jobs.sqlite");
