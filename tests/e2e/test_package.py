@@ -10,6 +10,7 @@ import tempfile
 import tomllib
 import unittest
 
+import debian_machine
 import program
 import unit_calls
 
@@ -187,10 +188,7 @@ class Package(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="packmerger-deb-")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        made = run("sh", "-c", 'umask 022; exec cpack --config "$0" -B "$1"', BUILD / "CPackConfig.cmake", cls.folder)
-        if made.returncode != 0:
-            raise AssertionError(made.stdout + made.stderr)
-        cls.deb = cls.folder / "packmerger.deb"
+        cls.deb = debian_machine.make_package(cls.folder)
         run("dpkg-deb", "-x", cls.deb, cls.folder / "root").check_returncode()
 
     @needs("lintian")
