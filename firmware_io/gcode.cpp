@@ -24,25 +24,29 @@ using ascii::trim;
 
 }  // namespace
 
-std::vector<GcodeCommand> gcode_commands(std::string_view program) {
-  std::vector<GcodeCommand> commands;
-  std::size_t line = 0;
-  while (!program.empty()) {
-    const std::size_t end = std::min(program.find('\n'), program.size());
-    std::string_view text = program.substr(0, end);
-    program.remove_prefix(std::min(end + 1, program.size()));
-    ++line;
+GcodeCommands::Iterator& GcodeCommands::Iterator::operator++() {
+  command_ = {};
+  while (!rest_.empty() && command_.text.empty()) {
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    std::string_view text = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++line_;
     text = trim(text.substr(0, text.find(';')));
-    if (!text.empty()) commands.push_back({text, line});
+    if (!text.empty()) command_ = {text, line_};
   }
-  return commands;
+  return *this;
 }
 
-void check_gcode_commands(const std::vector<GcodeCommand>& commands) {
-  if (commands.empty())
-    throw Error(Fault::kBadInput, "The program has no command", "Prepare the model again.");
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const GcodeCommand& command = commands[i];
+std::size_t GcodeCommands::count() const {
+  std::size_t count = 0;
+  for (Iterator i = begin(); i != end(); ++i) ++count;
+  return count;
+}
+
+void check_gcode_commands(const GcodeCommands& commands) {
+  std::size_t number = 0;
+  for (const GcodeCommand& command : commands) {
+    ++number;
     for (char c : command.text)
       if ((c < ' ' || c > '~') && c != '\t')
         refuse(command, "holds a byte that is not plain ASCII",
@@ -54,11 +58,13 @@ void check_gcode_commands(const std::vector<GcodeCommand>& commands) {
     if (has(command.text, "M110"))
       refuse(command, "holds M110, which would change the printer's line count",
              "Remove it: PackMerger numbers the lines itself.");
-    if (numbered_gcode(i + 1, command.text).size() - 1 > kMaxGcodeLine)
+    if (numbered_gcode(number, command.text).size() - 1 > kMaxGcodeLine)
       refuse(command, "is too long for the printer's serial line",
              "Shorten it: with number and checksum a line may have " +
                  std::to_string(kMaxGcodeLine) + " characters.");
   }
+  if (number == 0)
+    throw Error(Fault::kBadInput, "The program has no command", "Prepare the model again.");
 }
 
 std::string numbered_gcode(std::size_t number, std::string_view command) {
@@ -106,28 +112,6 @@ Omission omission_of(std::string_view word) {
   // A printer with one tool may know no tools at all.
   const bool other_tool = word.starts_with('T') && word != "T0";
   return other_tool || one_of(word, kOfPrint) ? Omission::kOfPrint : Omission::kMinor;
-}
-
-std::vector<std::string> gcode_modes(const std::vector<std::string>& commands, std::size_t count) {
-  std::size_t positions = count;  // the last G90 or G91
-  std::size_t extrusion = count;  // the last M82 or M83
-  std::string feed;
-  for (std::size_t i = count;
-       i-- > 0 && (positions == count || extrusion == count || feed.empty());) {
-    const std::string_view text = commands[i];
-    const std::string_view word = gcode_word(text);
-    if (positions == count && (word == "G90" || word == "G91")) positions = i;
-    if (extrusion == count && (word == "M82" || word == "M83")) extrusion = i;
-    const std::size_t at = text.find(" F");
-    const bool moves = word == "G0" || word == "G1" || word == "G2" || word == "G3";
-    if (feed.empty() && moves && at != std::string_view::npos)
-      feed = text.substr(at + 1, text.find(' ', at + 1) - at - 1);
-  }
-  std::vector<std::string> lines;
-  for (const std::size_t i : {std::min(positions, extrusion), std::max(positions, extrusion)})
-    if (i < count) lines.push_back(commands[i]);
-  if (!feed.empty()) lines.push_back("G1 " + feed);
-  return lines;
 }
 
 bool waits_for_user(std::string_view command) {

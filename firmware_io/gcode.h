@@ -17,11 +17,38 @@ struct GcodeCommand {
 };
 
 // The commands of a program in order; comments and empty lines are left out, because Marlin gives
-// an empty line no answer. The views point into `program`.
-std::vector<GcodeCommand> gcode_commands(std::string_view program);
+// an empty line no answer. They are read from the text as they are asked for, so that a long
+// program takes no further memory; the views point into it.
+class GcodeCommands {
+ public:
+  class Iterator {
+   public:
+    explicit Iterator(std::string_view program) : rest_(program) { ++*this; }
+    const GcodeCommand& operator*() const { return command_; }
+    Iterator& operator++();
+    // Of one and the same program.
+    bool operator!=(const Iterator& other) const {
+      return command_.text.data() != other.command_.text.data();
+    }
+
+   private:
+    std::string_view rest_;
+    std::size_t line_ = 0;
+    GcodeCommand command_;  // behind the last: no text
+  };
+
+  explicit GcodeCommands(std::string_view program) : program_(program) {}
+  Iterator begin() const { return Iterator(program_); }
+  Iterator end() const { return Iterator({}); }
+  std::size_t count() const;
+
+ private:
+  std::string_view program_;
+};
+inline GcodeCommands gcode_commands(std::string_view program) { return GcodeCommands(program); }
 
 // Throws Error{kBadInput} as check_gcode() promises.
-void check_gcode_commands(const std::vector<GcodeCommand>& commands);
+void check_gcode_commands(const GcodeCommands& commands);
 
 // "N1 G28*18\n": the checksum is the exclusive or of every byte before the asterisk.
 std::string numbered_gcode(std::size_t number, std::string_view command);
@@ -42,10 +69,6 @@ enum class Omission {
   kOfPrint    // a move, a heater, a unit or a tool: what is printed is wrong from there on
 };
 Omission omission_of(std::string_view word);
-
-// Commands that set again what the first `count` of `commands` have set last: absolute or relative
-// positions (G90, G91) and extrusion (M82, M83), in their order, and the feed rate.
-std::vector<std::string> gcode_modes(const std::vector<std::string>& commands, std::size_t count);
 
 enum class GcodeReplyKind {
   kOk,

@@ -48,9 +48,10 @@ void GcodeStream::begin_cancel() {
   send_raw("M108");
   const std::size_t first =
       std::min(highest_ > kSlack ? highest_ - kSlack : 1, commands_.size() + 1);
-  commands_.resize(highest_);
-  for (std::size_t i = first; i <= highest_; ++i) commands_[i - 1] = "M105";
-  for (std::string& line : gcode_lines(options_.safe_gcode)) commands_.push_back(std::move(line));
+  commands_.shorten(highest_);
+  for (std::size_t i = first; i <= commands_.size(); ++i) commands_.replace(i - 1, "M105");
+  while (commands_.size() < highest_) commands_.append("M105");  // those behind the program
+  for (std::string& line : gcode_lines(options_.safe_gcode)) commands_.append(std::move(line));
   position_seen_ = false;
 }
 

@@ -8,14 +8,14 @@
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode.h"
 #include "firmware_io/gcode_channel.h"
+#include "firmware_io/gcode_script.h"
 #include "firmware_io/gcode_stream.h"
 
 namespace packmerger {
 
 namespace {
 
-void refuse_unanswerable_pauses(const std::vector<GcodeCommand>& commands,
-                                const GcodeAbilities& abilities) {
+void refuse_unanswerable_pauses(const GcodeCommands& commands, const GcodeAbilities& abilities) {
   if (abilities.prompts) return;
   for (const GcodeCommand& command : commands)
     if (waits_for_user(command.text))
@@ -53,18 +53,16 @@ void check_gcode(std::string_view program) { check_gcode_commands(gcode_commands
 
 void print_gcode(Port& port, std::string_view program, const StreamOptions& options,
                  const PrintListener& listener, PrintControl& control) {
-  const std::vector<GcodeCommand> commands = gcode_commands(program);
+  const GcodeCommands commands = gcode_commands(program);
   check_gcode_commands(commands);
-  Reporter reporter(port, listener, options, commands.size(), RemainingTime(time_marks(commands)));
+  GcodeScript script(program);
+  Reporter reporter(port, listener, options, script.size(), RemainingTime(time_marks(commands)));
   GcodeChannel channel(port);
   const GcodeAbilities abilities = connect_gcode(channel, options, control);
   refuse_unanswerable_pauses(commands, abilities);
 
-  std::vector<std::string> texts;
-  texts.reserve(commands.size());
-  for (const GcodeCommand& command : commands) texts.emplace_back(command.text);
   const std::string silence = abilities.autoreport ? kReportNothing : "";
-  GcodeStream stream(channel, std::move(texts), options, abilities, reporter, control);
+  GcodeStream stream(channel, std::move(script), options, abilities, reporter, control);
   try {
     stream.run();
   } catch (const Error& error) {

@@ -88,7 +88,7 @@ std::size_t GcodeStream::pause(std::size_t number) {
   const bool parked = std::exchange(parks_, false);
   std::vector<std::string> resume = gcode_lines(options_.resume_gcode);
   if (!resume.empty() || !options_.pause_gcode.empty())
-    for (std::string& line : gcode_modes(commands_, number - 1)) resume.push_back(std::move(line));
+    for (std::string& line : commands_.modes(number - 1)) resume.push_back(std::move(line));
   if (parked) {
     std::vector<std::string> lines = gcode_lines(options_.pause_gcode);
     lines.insert(lines.begin(), "M400");
@@ -136,8 +136,7 @@ void GcodeStream::stand_still() {
 std::size_t GcodeStream::execute_between(std::size_t number,
                                          const std::vector<std::string>& lines) {
   const std::size_t end = number + lines.size();
-  commands_.insert(commands_.begin() + static_cast<std::ptrdiff_t>(number - 1), lines.begin(),
-                   lines.end());
+  commands_.insert(number - 1, lines);
   inserted_.push_back({number, lines.size()});
   while (number < end && !cancelling_) number = exchange(number);
   return number;

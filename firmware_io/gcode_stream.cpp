@@ -16,9 +16,8 @@ constexpr std::size_t kCareful = 10;
 
 }  // namespace
 
-GcodeStream::GcodeStream(GcodeChannel& channel, std::vector<std::string> commands,
-                         const StreamOptions& options, const GcodeAbilities& abilities,
-                         Reporter& reporter, PrintControl& control)
+GcodeStream::GcodeStream(GcodeChannel& channel, GcodeScript commands, const StreamOptions& options,
+                         const GcodeAbilities& abilities, Reporter& reporter, PrintControl& control)
     : channel_(channel),
       commands_(std::move(commands)),
       options_(options),
@@ -41,13 +40,13 @@ void GcodeStream::run() {
 
 // Where the printer tells its position unasked, M114 would prove nothing.
 void GcodeStream::silence_positions(std::size_t number) {
-  if (!positions_unasked_ || commands_.back() == kNoPositions) return;
-  commands_.emplace_back(kNoPositions);
+  if (!positions_unasked_ || commands_[commands_.size() - 1] == kNoPositions) return;
+  commands_.append(kNoPositions);
   inserted_.push_back({number, 1});
 }
 
 std::string GcodeStream::command(std::size_t number) const {
-  if (number <= commands_.size()) return commands_[number - 1];
+  if (number <= commands_.size()) return std::string(commands_[number - 1]);
   return number == commands_.size() + 1 ? "M400" : "M114";
 }
 

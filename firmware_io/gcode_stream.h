@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode_channel.h"
+#include "firmware_io/gcode_script.h"
 #include "firmware_io/heat_watch.h"
 #include "firmware_io/print_state.h"
 
@@ -22,9 +23,8 @@ namespace packmerger {
 class GcodeStream {
  public:
   // The printer's line count is 0. commands: the program's, without numbers.
-  GcodeStream(GcodeChannel& channel, std::vector<std::string> commands,
-              const StreamOptions& options, const GcodeAbilities& abilities, Reporter& reporter,
-              PrintControl& control);
+  GcodeStream(GcodeChannel& channel, GcodeScript commands, const StreamOptions& options,
+              const GcodeAbilities& abilities, Reporter& reporter, PrintControl& control);
 
   // Returns when everything was executed, or, after a cancel, when the printer has stopped and
   // executed the safe text. Throws Error{kIo}.
@@ -117,7 +117,7 @@ class GcodeStream {
   Fault fault_of_cancel() const;
 
   GcodeChannel& channel_;
-  std::vector<std::string> commands_;
+  GcodeScript commands_;
   const StreamOptions& options_;
   const GcodeAbilities abilities_;
   Reporter& reporter_;

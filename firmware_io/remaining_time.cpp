@@ -37,18 +37,21 @@ std::optional<double> minutes_left(std::string_view command) {
   return line.is('M', 73) ? line.value('R') : std::nullopt;
 }
 
-std::vector<TimeMark> slicer_marks(const std::vector<GcodeCommand>& commands) {
+std::vector<TimeMark> slicer_marks(const GcodeCommands& commands) {
   std::vector<TimeMark> marks;
   double total_s = 0;
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const std::optional<double> left_min = minutes_left(commands[i].text);
+  std::size_t done = 0;
+  for (const GcodeCommand& command : commands) {
+    const std::size_t before = done++;
+    const std::optional<double> left_min = minutes_left(command.text);
     if (!left_min) continue;
     if (marks.empty()) total_s = 60 * *left_min;
     const double expected_s = total_s - 60 * *left_min;
-    if (marks.empty() || expected_s > marks.back().expected_s) marks.push_back({i, expected_s});
+    if (marks.empty() || expected_s > marks.back().expected_s)
+      marks.push_back({before, expected_s});
   }
   if (marks.size() < 2) return {};
-  marks.push_back({commands.size(), total_s});
+  marks.push_back({done, total_s});
   return marks;
 }
 
@@ -75,18 +78,19 @@ double seconds_of(std::string_view action) {
 
 }  // namespace
 
-bool has_slicer_marks(const std::vector<GcodeCommand>& commands) {
-  return !slicer_marks(commands).empty();
-}
+bool has_slicer_marks(const GcodeCommands& commands) { return !slicer_marks(commands).empty(); }
 
-std::vector<TimeMark> time_marks(const std::vector<GcodeCommand>& commands) {
+std::vector<TimeMark> time_marks(const GcodeCommands& commands) {
   if (std::vector<TimeMark> marks = slicer_marks(commands); !marks.empty()) return marks;
   GcodeMotion motion(GcodeRules::kMarlin);
-  Marks marks(commands.size());
+  const std::size_t count = commands.count();
+  Marks marks(count);
   double expected_s = 0;
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    expected_s += motion.follow(GcodeLine(commands[i].text, GcodeRules::kMarlin)).time_s;
-    marks.add(i + 1, expected_s, i + 1 == commands.size());
+  std::size_t done = 0;
+  for (const GcodeCommand& command : commands) {
+    expected_s += motion.follow(GcodeLine(command.text, GcodeRules::kMarlin)).time_s;
+    ++done;
+    marks.add(done, expected_s, done == count);
   }
   return marks.take();
 }

@@ -8,7 +8,7 @@
 
 namespace packmerger {
 
-struct GcodeCommand;
+class GcodeCommands;
 
 // The program's own idea of its time: after `done` lines or bytes, expected_s seconds have passed.
 struct TimeMark {
@@ -17,11 +17,11 @@ struct TimeMark {
 };
 
 // Whether the program carries its slicer's clock: at least two marks (M73 R, minutes left).
-bool has_slicer_marks(const std::vector<GcodeCommand>& commands);
+bool has_slicer_marks(const GcodeCommands& commands);
 
 // From the slicer's marks (M73 R, minutes left) where the program has them, otherwise from the
 // lengths and speeds of its moves and its dwells; heating and homing count nothing. done: commands.
-std::vector<TimeMark> time_marks(const std::vector<GcodeCommand>& commands);
+std::vector<TimeMark> time_marks(const GcodeCommands& commands);
 
 // From the moves and delays of an x3g program. done: counted[i] with action i.
 std::vector<TimeMark> time_marks(const std::vector<std::string_view>& actions,

@@ -40,7 +40,7 @@ double filament_section_mm2(const Profile& profile) {
 
 void take_time(ReadyProgram& program, const SlicerComments& told, std::string_view gcode) {
   Estimate& estimate = program.estimate;
-  const std::vector<GcodeCommand> commands = gcode_commands(gcode);
+  const GcodeCommands commands = gcode_commands(gcode);
   // M73 with the minutes that are left is the slicer's own clock too
   const bool has_marks = has_slicer_marks(commands);
   estimate.source = told.time_s || has_marks ? EstimateSource::kProgram : EstimateSource::kMoves;

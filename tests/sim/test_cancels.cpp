@@ -74,6 +74,20 @@ TEST(Cancel, EndsWhateverThePrinterAsksNext) {
   EXPECT_THAT(shown, HasSubstr("Paused (Continue)"));
 }
 
+// While the last moves are waited for, with a line that is none of the program's.
+TEST(Cancel, BehindTheProgramsLastLine) {
+  Marlin firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure =
+      act_at(port, "M104 S0\nG1 X1000 F600\nG1 X0 F600\n", 20, control, [&] { control.cancel(); });
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+  EXPECT_LT(port.now_s(), 30);
+  EXPECT_EQ(port.executed().back(), "M155 S0");
+  EXPECT_EQ(count(port.executed(), "M140 S0"), 1u);
+}
+
 TEST(Cancel, ThatCannotEndHaltsThePrinterAndSaysSo) {
   for (const bool halts : {true, false}) {
     Stubborn firmware(true, halts);

@@ -35,7 +35,10 @@ TEST(GcodeCodec, NumbersAndSums) {
 }
 
 TEST(GcodeCodec, LeavesCommentsAndEmptyLinesOut) {
-  const auto commands = gcode_commands("; \xC3\xA9\n\n  G28 ; home\r\nM117 a*b\n\t;\nM84");
+  std::vector<GcodeCommand> commands;
+  for (const GcodeCommand& command :
+       gcode_commands("; \xC3\xA9\n\n  G28 ; home\r\nM117 a*b\n\t;\nM84"))
+    commands.push_back(command);
   ASSERT_EQ(commands.size(), 3u);
   EXPECT_EQ(commands[0].text, "G28");
   EXPECT_EQ(commands[0].line, 3u);
