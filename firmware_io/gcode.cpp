@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "firmware_io/ascii.h"
+#include "gcode/gcode_line.h"
 
 namespace packmerger {
 
@@ -96,6 +97,14 @@ bool is_long(std::string_view command) {
 }
 
 bool blocks(std::string_view command) { return is_heating(command) || is_long(command); }
+
+double dwell_s(std::string_view command) {
+  constexpr double kLongest_s = 86400;
+  const GcodeLine line(command, GcodeRules::kMarlin);
+  if (!line.is('G', 4) && !line.is('M', 0) && !line.is('M', 1)) return 0;
+  const double seconds = line.value('S').value_or(line.value('P').value_or(0) / 1000);
+  return seconds > 0 ? std::min(seconds, kLongest_s) : 0;
+}
 
 bool tells_position(std::string_view command) {
   static constexpr std::array<std::string_view, 8> kWords = {"M114", "G28", "G29",  "G30",

@@ -121,7 +121,8 @@ void GcodeStream::watch_silence() {
   const bool may_be_long =
       is_long(command(last_)) && !busy_seen_ && !cancelling_ && complaint_.empty();
   const double limit = std::max(options_.timeout_s * (may_be_long ? kLongFactor : 1.0),
-                                kBusiesMissed * busy_interval_s_);
+                                kBusiesMissed * busy_interval_s_) +
+                       (may_be_long ? dwell_s(command(last_)) : 0);
   if (now - alive_at_s_ >= limit) fail_in_silence();
   double patience = limit / kTriesPerTimeout;
   if (busy_seen_) patience = std::min(patience, kBusyPatience_s);

@@ -65,6 +65,20 @@ TEST(Life, BusyAlwaysCounts) {
   }
 }
 
+TEST(Life, ADwellMayTakeWhatItStates) {
+  MarlinTraits traits;
+  traits.busy = false;
+  for (const char* dwell : {"G4 S3600", "G4 P3600000"}) {
+    Marlin firmware(Pace{1, false}, traits);
+    FaultyPort port(firmware);
+    PrintControl control;
+    StreamOptions options = scenario_options();
+    options.timeout_s = 10;
+    const auto failure = print(port, true, std::string(dwell) + "\nG1 X1\n", control, {}, options);
+    EXPECT_FALSE(failure) << dwell << failure->what();
+  }
+}
+
 TEST(Life, ALostOkIsNoticedWhateverThePrinterTellsUnasked) {
   for (const char* trait : {"positions_unasked", "reports_unasked"}) {
     MarlinTraits traits;
