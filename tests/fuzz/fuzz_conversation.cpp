@@ -1,6 +1,7 @@
 // The printer says whatever the fuzzer likes, in simulated time: a print ends, done or with an
-// Error, in bounded time and with bounded output, and sends nothing more once the printer has
-// halted.
+// Error, in bounded time and with bounded output, and sends nothing but what turns the heaters off
+// once the printer has halted. tests/fuzz/conversation holds what firmwares say, one reply a line:
+// its blank says after what time, and that nothing is put before it.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -63,7 +64,7 @@ class ScriptedPort : public Port {
   }
 
   std::size_t write(std::string_view bytes, double) override {
-    if (dead_) std::abort();
+    if (dead_ && bytes != "M104 S0\n" && bytes != "M155 S0\n") std::abort();
     constexpr std::size_t kMost = std::size_t{1} << 20;
     sent_ += bytes.size();
     if (sent_ > kMost) std::abort();
