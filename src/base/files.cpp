@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "base/descriptor.h"
 #include "base/error.h"
+#include "base/remains.h"
 
 namespace packmerger {
 namespace {
@@ -78,7 +80,9 @@ class Sha256 {
 
 fs::path make_folder(const fs::path& pattern) {
   std::string name = pattern.string();
+  const std::lock_guard lock(remains().mutex);
   if (::mkdtemp(name.data()) == nullptr) cannot_write(pattern, reason());
+  remains().folders.insert(name);
   return name;
 }
 
@@ -173,8 +177,11 @@ TemporaryFolder TemporaryFolder::beside(const fs::path& target) {
 }
 
 TemporaryFolder::~TemporaryFolder() {
+  if (path_.empty()) return;
   std::error_code ignored;
-  if (!path_.empty()) fs::remove_all(path_, ignored);
+  fs::remove_all(path_, ignored);
+  const std::lock_guard lock(remains().mutex);
+  remains().folders.erase(path_);
 }
 
 void TemporaryFolder::publish(const fs::path& target) {
@@ -182,9 +189,12 @@ void TemporaryFolder::publish(const fs::path& target) {
   const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
   sync_tree(path_);
   ::chmod(path_.c_str(), 0755);
-  const int why = rename_keeping(path_, clean);
-  if (why != 0) cannot_write(clean, std::strerror(why));
-  path_.clear();
+  {
+    const std::lock_guard lock(remains().mutex);
+    const int why = rename_keeping(path_, clean);
+    if (why != 0) cannot_write(clean, std::strerror(why));
+    remains().folders.erase(std::exchange(path_, {}));
+  }
   sync_folder(clean.parent_path());
 }
 

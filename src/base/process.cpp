@@ -12,10 +12,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include "base/confinement.h"
 #include "base/error.h"
+#include "base/remains.h"
 
 namespace packmerger {
 namespace {
@@ -94,6 +96,11 @@ struct Pipe {
   ::_exit(127);
 }
 
+void forget_group(pid_t group) {
+  const std::lock_guard lock(remains().mutex);
+  remains().groups.erase(group);
+}
+
 // Appends what can be read now, up to `room` bytes in `text`. False at the end of the stream.
 bool drain(int fd, std::string& text, std::size_t room) {
   std::array<char, 65536> block;
@@ -119,7 +126,11 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   Pipe err;
   Pipe failure;
   const pid_t parent = ::getpid();
-  pid_ = ::fork();
+  {
+    const std::lock_guard lock(remains().mutex);
+    pid_ = ::fork();
+    if (pid_ > 0) remains().groups.insert(pid_);
+  }
   if (pid_ < 0)
     throw Error(Fault::kInternal, std::string("Cannot start a process: ") + std::strerror(errno),
                 "Close other programs and try again.");
@@ -135,6 +146,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   } while (told < 0 && errno == EINTR);
   if (told == sizeof cause) {
     ::waitpid(pid_, nullptr, 0);
+    forget_group(pid_);
     throw Error(Fault::kUnavailable,
                 "Cannot run " + spec.argv.front() + ": " + std::strerror(cause),
                 "Install it, or set the PATH so that it is found.");
@@ -147,6 +159,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
 ChildProcess::~ChildProcess() {
   signal_group(SIGKILL);
   if (!status_) ::waitpid(pid_, nullptr, 0);
+  forget_group(pid_);
   ::close(out_);
   ::close(err_);
 }

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "cli/calibration_report.h"
 #include "cli/daemon_verb.h"
+#include "cli/late_stop.h"
 #include "cli/measured_prints.h"
 #include "cli/stated_prints.h"
 #include "cli/verb.h"
@@ -106,6 +107,7 @@ Calibration calibration_of(const Profile& profile, const std::vector<StatedPrint
                            Warnings warnings) {
   std::vector<CalibrationPrint> prints;
   {
+    watch_for_late_stop();
     const Progress progress = terminal_progress();
     for (const StatedPrint& print : stated)
       prints.push_back(measured_print(profile, print, warnings, progress));

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/names.h"
+#include "cli/late_stop.h"
 #include "cli/plan_options.h"
 #include "cli/verb.h"
 #include "job/comparison_table.h"
@@ -27,6 +28,7 @@ void run(const Arguments& arguments) {
   nlohmann::json all = nlohmann::json::object();
   std::vector<Job> jobs;
   {
+    watch_for_late_stop();
     const Progress progress = terminal_progress();
     for (const Profile& profile : profiles)
       jobs.push_back(plan(profile, plan_options(arguments.plan), progress).job);

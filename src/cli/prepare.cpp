@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "base/names.h"
+#include "cli/late_stop.h"
 #include "cli/plan_options.h"
 #include "cli/ready_program.h"
 #include "cli/verb.h"
@@ -61,6 +62,7 @@ void take_as_it_is(const Arguments& arguments, const Profile& profile) {
   check_job_folder(arguments.out);
   ReadyProgram program;
   {
+    watch_for_late_stop();
     const Progress progress = terminal_progress();
     program = read_ready_program(profile, arguments.plan.models.front(), progress);
     write_program_folder(program, arguments.out);
@@ -85,6 +87,7 @@ void run(const Arguments& arguments, const CLI::App& verb) {
   }
   Job job;
   {
+    watch_for_late_stop();
     const Progress progress = terminal_progress();
     job =
         prepare(profile, plan_options(arguments.plan), arguments.variant, arguments.out, progress);

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 
+#include "cli/late_stop.h"
 #include "cli/verb.h"
 
 namespace packmerger::cli {
@@ -20,7 +21,10 @@ std::atomic<bool> interrupt_flag{false};
 std::atomic<int> interrupt_count{0};
 std::atomic<int> deadly_count{2};
 
-void on_signal(int) { interrupt_flag.store(true); }
+void on_signal(int) {
+  interrupt_flag.store(true);
+  stop_asked();
+}
 
 void on_counted_signal(int number) {
   if (++interrupt_count < deadly_count) return;

@@ -36,3 +36,15 @@ def torus(ring=15.0, tube=5.0, sectors=48, sides=24):
             c, d = grid[(i + 1) % sectors, (j + 1) % sides], grid[i, (j + 1) % sides]
             triangles += [[a, b, c], [a, c, d]]
     return np.array(triangles)
+
+
+def crossed_bars(count):
+    """Bars of 60 x 2 x 5 mm on z = 0, turned around one axis: bodies that overlap, with tops in one plane."""
+    sides = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+             (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+    corners = np.array([(x, y, z) for z in (0, 5) for y in (-1, 1) for x in (-30, 30)], dtype=float)
+    bars = []
+    for angle in np.pi * np.arange(count) / count:
+        turn = np.array([[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        bars.append((corners @ turn)[np.array(sides)])
+    return np.concatenate(bars)

@@ -16,7 +16,7 @@ import program
 from bad_inputs import stl
 from check_job import check
 from checker import estimates
-from shapes import sphere, torus
+from shapes import crossed_bars, sphere, torus
 
 FAST = ("--set", "tabu_patience=1", "--set", "tabu_samples=2")
 WITHOUT_THE_CLOCK = ("timings_s",)
@@ -114,6 +114,25 @@ class Usage(CommandLine):
                 self.assertEqual(program.files_below(beside), [])
                 with self.assertRaises(ProcessLookupError, msg="a child still runs"):
                     os.killpg(child.pid, 0)
+
+    def test_a_long_step_of_a_library_is_ended_too(self):
+        """Hundred bars around one axis, whose tops lie in one plane: cutting that plane takes minutes, in one call."""
+        model = self.folder / "bars.stl"
+        model.write_bytes(stl(crossed_bars(100)))
+        child = subprocess.Popen([program.binary(), "prepare", model, "--profile", "objet30", "--no-split",
+                                  "--out", self.folder / "job"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        for line in child.stderr:
+            if "uniting" in line:
+                break
+        time.sleep(3)
+        self.assertIsNone(child.poll(), "it would take minutes")
+        started = time.monotonic()
+        child.terminate()
+        _, err = child.communicate(timeout=100)
+        self.assertLess(time.monotonic() - started, 10)
+        self.assertEqual(child.returncode, 130, err[-500:])
+        self.assertIn("Interrupted", err)
+        self.assertFalse((self.folder / "job").exists())
 
 
 class Jobs(CommandLine):

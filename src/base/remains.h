@@ -1,0 +1,26 @@
+// What would be left behind if the program ended in the middle of something.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <mutex>
+#include <set>
+
+namespace packmerger {
+
+// Kept by TemporaryFolder and ChildProcess, under the mutex also while a folder is made or moved
+// away and while a process is started.
+struct Remains {
+  std::timed_mutex mutex;
+  std::set<std::filesystem::path> folders;  // temporary ones
+  std::set<pid_t> groups;                   // of child processes
+};
+Remains& remains();
+
+// Ends the program at once, whatever its threads are doing: kills the groups of its children,
+// removes its temporary folders, and leaves everything else as it is. For what cannot be
+// interrupted otherwise.
+[[noreturn]] void end_without_remains(int exit_code);
+
+}  // namespace packmerger
