@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "base/simd_targets.h"
 
@@ -132,8 +134,9 @@ HWY_INLINE void sum_together(const FallBlock* blocks, std::ptrdiff_t stride,
   }
 }
 
-void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
-               std::span<const HeightCell> cells, std::int32_t* sums) {
+// For up to kCellsOfSum cells.
+void sum_some(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
+              std::span<const HeightCell> cells, std::int32_t* sums) {
   in_groups<std::max(1, kBlocksTogether / 2)>(
       blocks.size(), [&](std::size_t first, auto count) HWY_ATTR {
         sum_together<count()>(&blocks[first], stride, cells,
@@ -143,8 +146,8 @@ void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
 
 #else
 
-void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
-               std::span<const HeightCell> cells, std::int32_t* sums) {
+void sum_some(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
+              std::span<const HeightCell> cells, std::int32_t* sums) {
   for (const FallBlock& block : blocks) {
     std::fill_n(sums, kFallPositions, 0);
     for (const HeightCell& cell : cells) {
@@ -162,9 +165,17 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace packmerger {
+namespace {
+
+// Their heights' sum stays in 32 bits.
+constexpr std::size_t kCellsOfSum = 65536;
+static_assert(kCellsOfSum * std::numeric_limits<Height>::max() <=
+              std::numeric_limits<std::int32_t>::max());
+
+}  // namespace
 
 HWY_EXPORT(fall);
-HWY_EXPORT(sum_field);
+HWY_EXPORT(sum_some);
 
 std::size_t fall(std::span<FallBlock> blocks, std::ptrdiff_t stride,
                  std::span<const HeightCell> cells) {
@@ -172,8 +183,15 @@ std::size_t fall(std::span<FallBlock> blocks, std::ptrdiff_t stride,
 }
 
 void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
-               std::span<const HeightCell> cells, std::int32_t* sums) {
-  HWY_DYNAMIC_DISPATCH(sum_field)(blocks, stride, cells, sums);
+               std::span<const HeightCell> cells, std::int64_t* sums) {
+  const std::size_t count = blocks.size() * static_cast<std::size_t>(kFallPositions);
+  std::fill_n(sums, count, 0);
+  std::vector<std::int32_t> of_some(count);
+  for (std::size_t first = 0; first < cells.size(); first += kCellsOfSum) {
+    const auto some = cells.subspan(first, std::min(kCellsOfSum, cells.size() - first));
+    HWY_DYNAMIC_DISPATCH(sum_some)(blocks, stride, some, of_some.data());
+    for (std::size_t i = 0; i < count; ++i) sums[i] += of_some[i];
+  }
 }
 
 }  // namespace packmerger

@@ -33,9 +33,9 @@ struct FallBlock {
 std::size_t fall(std::span<FallBlock> blocks, std::ptrdiff_t stride,
                  std::span<const HeightCell> cells);
 
-// sums[i], kFallPositions for each block: the sum of max(0, field(cell)) over the cells, for up to
-// 65536 of them; their values do not enter.
+// sums[i], kFallPositions for each block: the sum of max(0, field(cell)) over the cells, however
+// many there are; their values do not enter.
 void sum_field(std::span<const FallBlock> blocks, std::ptrdiff_t stride,
-               std::span<const HeightCell> cells, std::int32_t* sums);
+               std::span<const HeightCell> cells, std::int64_t* sums);
 
 }  // namespace packmerger

@@ -45,7 +45,7 @@ struct Hunt {
   std::vector<Range> xs;  // of the block with the same heights
   std::vector<int> ys;
   std::vector<Height> heights;
-  std::vector<std::int32_t> sums;
+  std::vector<std::int64_t> sums;
 
   std::size_t index_of(const FallBlock& block) const {
     return static_cast<std::size_t>(block.heights - heights.data()) / kFallPositions;
@@ -227,7 +227,7 @@ class Scan {
     return limit;
   }
 
-  void rate(Hunt& hunt, const FallBlock& block, const std::int32_t* sums) {
+  void rate(Hunt& hunt, const FallBlock& block, const std::int64_t* sums) {
     const std::size_t index = hunt.index_of(block);
     const Range& xs = hunt.xs[index];
     const Height lowest = *std::min_element(block.heights, block.heights + xs.count());

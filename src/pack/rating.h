@@ -33,7 +33,7 @@ class Rating {
   }
 
   // The waste where the part's cells that need support hang over a horizon of this sum.
-  std::int64_t waste(Height z, std::int32_t horizon) const {
+  std::int64_t waste(Height z, std::int64_t horizon) const {
     return static_cast<std::int64_t>(part_.hang.size()) * z + part_.hang_sum - horizon;
   }
 

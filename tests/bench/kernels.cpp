@@ -149,7 +149,7 @@ void fall_by_kernel(benchmark::State& state) {
 }
 
 void sums_by_kernel(benchmark::State& state) {
-  std::vector<std::int32_t> sums(static_cast<std::size_t>(kPositions * kPositions));
+  std::vector<std::int64_t> sums(static_cast<std::size_t>(kPositions * kPositions));
   all_blocks(state, [&](const Scene& scene, std::vector<FallBlock>& blocks) {
     sum_field(blocks, kStride, scene.cells, sums.data());
     benchmark::DoNotOptimize(sums.data());

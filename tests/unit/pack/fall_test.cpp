@@ -166,10 +166,10 @@ RC_GTEST_PROP(SumField, IsTheSumOfWhatIsAboveZero, (std::uint64_t seed)) {
   on_every_target([&](const char* target) {
     RC_LOG() << target;
     const Blocks all(scene, 0);
-    std::vector<std::int32_t> sums(all.heights.size() + 1, -77);
+    std::vector<std::int64_t> sums(all.heights.size() + 1, -77);
     sum_field(all.blocks, scene.stride, scene.cells, sums.data());
     for (int i = 0; i < scene.n; ++i) {
-      std::int32_t expected = 0;
+      std::int64_t expected = 0;
       for (const HeightCell& cell : scene.cells) expected += std::max(0, scene.at(cell, i));
       RC_ASSERT(sums[static_cast<std::size_t>(i)] == expected);
     }
@@ -177,15 +177,19 @@ RC_GTEST_PROP(SumField, IsTheSumOfWhatIsAboveZero, (std::uint64_t seed)) {
   });
 }
 
-TEST(SumField, HoldsTheMostCells) {
-  const std::vector<Height> field(200, 32767);
-  const std::vector<HeightCell> cells(65536);
-  const std::vector<FallBlock> blocks{{field.data(), nullptr, 0}};
-  on_every_target([&](const char* target) {
-    std::vector<std::int32_t> sums(kFallPositions);
-    sum_field(blocks, 100, cells, sums.data());
-    EXPECT_EQ(sums, std::vector<std::int32_t>(kFallPositions, 65536 * 32767)) << target;
-  });
+// As of the underside of a plate over a whole tray on the finest grid.
+TEST(SumField, HoldsAnyNumberOfCells) {
+  constexpr std::int64_t kHigh = 32767;
+  const std::vector<Height> field(200, kHigh);
+  const std::vector<FallBlock> blocks(3, {field.data(), nullptr, 0});
+  for (const std::int64_t count : {65536, 65537, 200001}) {
+    const std::vector<HeightCell> cells(static_cast<std::size_t>(count));
+    on_every_target([&](const char* target) {
+      std::vector<std::int64_t> sums(3 * kFallPositions);
+      sum_field(blocks, 100, cells, sums.data());
+      EXPECT_EQ(sums, std::vector<std::int64_t>(3 * kFallPositions, count * kHigh)) << target;
+    });
+  }
 }
 
 }  // namespace
