@@ -200,8 +200,10 @@ class Cutter {
                          (*projection)(corners[2]));
       insert_ring(corners);
     }
+    // What members have in common lies between their own sides.
     for (const int t : members)
-      for (const std::size_t i : met[static_cast<std::size_t>(t)]) insert_ring(common_[i]);
+      for (const std::size_t i : met[static_cast<std::size_t>(t)])
+        if (common_[i].size() <= 2) insert_ring(common_[i]);
 
     std::map<Triangulation::Vertex_handle, int> numbers;
     for (const auto vertex : flat.finite_vertex_handles())
