@@ -8,9 +8,12 @@
 
 #include "base/error.h"
 #include "shape/formats.h"
+#include "shape/utf16.h"
 
 namespace packmerger {
 namespace {
+
+using std::literals::operator""sv;
 
 constexpr double kMaxCoordinate = 1e9;
 
@@ -44,26 +47,13 @@ constexpr std::array<Signature, 12> kForeign = {{
     {"\x28\xB5\x2F\xFD", "a file compressed by zstd", kUnpack},
     {"7z\xBC\xAF", "a 7-Zip archive", kUnpack},
     {"Rar!", "a RAR archive", kUnpack},
-    {"\xFF\xFE", "text in UTF-16", kAsText},
-    {"\xFE\xFF", "text in UTF-16", kAsText},
+    {"\xFF\xFE\0\0"sv, "text in UTF-32", kAsText},
+    {"\0\0\xFE\xFF"sv, "text in UTF-32", kAsText},
     {"ISO-10303-21", "a STEP file", kExport},
     {"glTF", "a glTF file", kExport},
     {"BLENDER", "a Blender file", kExport},
     {"%PDF", "a PDF document", kExport},
 }};
-
-// Text in UTF-16 may come without its mark: every other byte of ASCII is then zero.
-bool is_bare_utf16(std::string_view bytes) {
-  constexpr std::size_t kLooked = 64;
-  if (bytes.size() < kLooked) return false;
-  for (const std::size_t zero : {0, 1}) {
-    bool all = true;
-    for (std::size_t i = 0; i < kLooked; i += 2)
-      all = all && bytes[i + zero] == 0 && bytes[i + 1 - zero] != 0;
-    if (all) return true;
-  }
-  return false;
-}
 
 [[noreturn]] void refuse_foreign(const char* what, const char* hint) {
   throw Error(Fault::kBadInput, std::string("The model file is ") + what + ", not a mesh", hint);
@@ -73,7 +63,6 @@ void refuse_foreign_files(std::string_view bytes) {
   if (has_binary_stl_length(bytes)) return;  // its header may hold anything
   for (const Signature& signature : kForeign)
     if (bytes.starts_with(signature.bytes)) refuse_foreign(signature.what, signature.hint);
-  if (is_bare_utf16(bytes)) refuse_foreign("text in UTF-16", kAsText);
 }
 
 // Empty where neither content nor extension tell.
@@ -132,8 +121,11 @@ ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
     throw Error(Fault::kBadInput, "The model file is empty",
                 "Wait until it is written, or export the model again.");
   refuse_foreign_files(bytes);
-  if (bytes.starts_with(kUtf8Mark) && !has_binary_stl_length(bytes))
-    bytes.remove_prefix(kUtf8Mark.size());
+  std::string text;
+  if (!has_binary_stl_length(bytes)) {
+    if (const auto order = utf16_order(bytes)) bytes = text = utf8_of(bytes, *order);
+    if (bytes.starts_with(kUtf8Mark)) bytes.remove_prefix(kUtf8Mark.size());
+  }
   ModelFile file;
   file.format = format_of(bytes, lower_case(extension));
   if (file.format == "stl") file.soup = read_stl(bytes, progress);

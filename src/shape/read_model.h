@@ -23,8 +23,9 @@ struct ModelFile {
 
 // The content decides the format where it can (a ZIP holding a 3D model part is 3MF; "ply" and
 // "OFF" as first words; 84 + 50·n bytes are a binary STL whatever the header says; "solid" with
-// facets is an ASCII STL), else the extension does. A byte order mark of UTF-8 is passed over; text
-// in UTF-16, compressed files, and some that are no meshes are refused by name.
+// facets is an ASCII STL), else the extension does. Text may be in
+// UTF-8 or, of either byte order, in UTF-16; a byte order mark is passed over. Compressed files,
+// and some that are no meshes are refused by name.
 //
 // Faces with more than three corners are cut into triangles (ears first, so that they may be
 // concave). Every triangle that is returned has

@@ -12,10 +12,13 @@
 #include "base/error.h"
 #include "fixtures/models.h"
 #include "shape/soup.h"
+#include "shape/utf16.h"
 #include "unit/shape/written.h"
 
 namespace packmerger {
 namespace {
+
+using std::literals::operator""sv;
 
 using testing::HasSubstr;
 using written::PlyCoding;
@@ -125,10 +128,36 @@ TEST(ReadModel, PassesOverAByteOrderMark) {
             "off");
 }
 
+TEST(ReadModel, ReadsTextInUtf16) {
+  const TriangleSoup cube = fixtures::cube(10);
+  const auto wide = [](const std::string& text, bool big_endian) {
+    std::string bytes;
+    for (const char c : text) written::put(bytes, static_cast<std::uint16_t>(c), big_endian);
+    return bytes;
+  };
+  // A name in Cyrillic, one beyond 16 bits, and half a character.
+  const std::u16string name = u"solid \u043A\u0443\u0431 \U0001F9CA\n";
+  for (const bool big_endian : {false, true}) {
+    const std::string mark = big_endian ? "\xFE\xFF" : "\xFF\xFE";
+    std::string title;
+    for (const char16_t unit : name) written::put(title, unit, big_endian);
+    written::put(title, std::uint16_t{0xD800}, big_endian);
+    const std::string stl = written::ascii_stl(cube, "x");
+    const std::string facets = wide(stl.substr(stl.find('\n')), big_endian);
+    for (const std::string& bytes :
+         {mark + title + facets, mark + wide(written::obj(cube), big_endian), wide(stl, big_endian),
+          wide(stl, big_endian) + "\n"}) {
+      const bool is_obj = bytes.find('#') < 4;
+      EXPECT_EQ(read_model_bytes(bytes, is_obj ? "obj" : "", Progress()).soup.triangles.size(),
+                12u);
+    }
+  }
+  EXPECT_EQ(utf8_of("\x3E\xD8\xCA\xDD\x3A\x04\x00\xDC?"sv, ByteOrder::kLittle),
+            "\xF0\x9F\xA7\x8A\xD0\xBA\xEF\xBF\xBD");
+}
+
 TEST(ReadModel, NamesWhatIsNoMesh) {
   const std::string text = written::ascii_stl(fixtures::cube(10), "x");
-  std::string wide;
-  for (const char c : text) (wide += c) += '\0';
   const auto told = [](const std::string& bytes) -> std::string {
     try {
       read_model_bytes(bytes, "stl", Progress());
@@ -140,8 +169,7 @@ TEST(ReadModel, NamesWhatIsNoMesh) {
   };
   using testing::HasSubstr;
   EXPECT_THAT(told("\x1F\x8B" + text), HasSubstr("gzip"));
-  EXPECT_THAT(told(wide), HasSubstr("UTF-16"));
-  EXPECT_THAT(told("\xFF\xFE" + wide), HasSubstr("UTF-16"));
+  EXPECT_THAT(told(std::string("\xFF\xFE\0\0s\0\0\0", 8)), HasSubstr("UTF-32"));
   EXPECT_THAT(told("ISO-10303-21;\n"), HasSubstr("STEP"));
   EXPECT_THAT(told(written::zipped({{"cube.stl", text}})), HasSubstr("ZIP archive"));
 }
