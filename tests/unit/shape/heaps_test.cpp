@@ -10,6 +10,7 @@
 #include "shape/resample.h"
 #include "shape/soup.h"
 #include "shape/surface_query.h"
+#include "shape/unite_bodies.h"
 
 namespace packmerger {
 namespace {
@@ -102,6 +103,22 @@ TEST(Heaps, AreUnitedWhateverCrossesOrTouches) {
     }
   }
   EXPECT_LE(refused, heaps() / 50);
+}
+
+TEST(Heaps, AreCountedOnceUndivided) {
+  for (unsigned number = 0; number < heaps(); ++number) {
+    SCOPED_TRACE(number);
+    Warnings warnings;
+    const Mesh model = repair(heap(number), warnings, Progress());
+    warnings.clear();
+    const Mesh united = unite_bodies(model, warnings, Progress());
+    EXPECT_TRUE(is_closed_manifold(to_soup(united)));
+    for (const Warning& warning : warnings)
+      EXPECT_EQ(warning.text.find("could not"), std::string::npos) << warning.text;
+    if (number % 2 == 0) {
+      EXPECT_NEAR(volume_mm3(united), lattice_volume_mm3(model), 0.1);
+    }
+  }
 }
 
 }  // namespace
