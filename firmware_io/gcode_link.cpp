@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "firmware_io/ascii.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode.h"
 #include "firmware_io/gcode_channel.h"
@@ -29,9 +30,11 @@ constexpr const char* kReportNothing = "M155 S0";
 
 // Behind a print, and after a failure the line count is unknown, so these go without numbers; no
 // answer is insisted on. A printer that says it has stopped may still obey; one that is dead is
-// not harmed.
-void send_text(GcodeChannel& channel, const std::string& text) {
+// not harmed. Returns the first "!!" of the answers: Klipper names the cause of its shutdown only
+// to the commands that it refuses.
+std::string send_text(GcodeChannel& channel, const std::string& text) {
   constexpr double kPatience_s = 1;
+  std::string refusal;
   try {
     for (const GcodeCommand& command : gcode_commands(text)) {
       channel.send(command.text);
@@ -39,12 +42,14 @@ void send_text(GcodeChannel& channel, const std::string& text) {
       while (channel.now_s() < end) {
         const auto reply = channel.receive(end - channel.now_s());
         if (!reply || reply->kind == GcodeReplyKind::kOk) break;
-        if (reply->kind == GcodeReplyKind::kStart) return;
+        if (reply->kind == GcodeReplyKind::kStart) return refusal;
+        if (reply->text.starts_with("!!") && refusal.empty()) refusal = reply->text;
       }
     }
   } catch (const Error&) {
     // The port is gone; the failure that led here is what the user must read.
   }
+  return refusal;
 }
 
 }  // namespace
@@ -67,9 +72,11 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
     stream.run();
   } catch (const Error& error) {
     if (!stream.may_send()) throw;
-    send_text(channel, options.safe_gcode + "\n" + silence);
+    const std::string refusal = send_text(channel, options.safe_gcode + "\n" + silence);
     if (stream.was_cancelled() && error.fault() == Fault::kIo) stream.throw_failed_cancel(error);
-    throw;
+    if (refusal.empty() || ascii::has(error.what(), refusal)) throw;
+    throw Error(error.fault(), std::string(error.what()) + "; then it said: " + refusal,
+                error.hint());
   } catch (...) {
     send_text(channel, options.safe_gcode + "\n" + silence);
     throw;

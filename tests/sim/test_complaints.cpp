@@ -67,6 +67,23 @@ INSTANTIATE_TEST_SUITE_P(
         Complaint{"Error:Heating failed, system stopped! Heater_ID: 0\n",
                   "A heater of the printer"}));
 
+// Klipper names the cause of its shutdown only to the commands that it refuses.
+TEST(Shutdown, IsToldWithItsCause) {
+  bool down = false;
+  Parrot firmware([&](const std::string& line) -> std::string {
+    if (line.rfind("N7 ", 0) == 0) down = true;
+    if (!down) return polite(line);
+    return line[0] == 'N' ? "// Klipper state: Shutdown\n"
+                          : "// Printer is shutdown\n!! MCU 'mcu' shutdown: Timer too close\nok\n";
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(30)), control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("Klipper state: Shutdown"));
+  EXPECT_THAT(failure->what(), HasSubstr("!! MCU 'mcu' shutdown: Timer too close"));
+}
+
 // A halt whose words are garbled is known by the silence that follows, and told in its words.
 TEST(GarbledHalt, IsToldOnceNothingFollows) {
   bool halted = false;
