@@ -1,8 +1,9 @@
 // What a child process may not do although its user may: speak over a network, write outside some
-// folders, look into or change other processes and the system. Linux: a seccomp filter made by
-// libseccomp, and Landlock for the files. Both hold for everything the child starts, and cannot be
-// taken back. What is not kept: it may change the mode of a file of its user wherever that lies,
-// and send signals to its user's processes.
+// folders, change modes, owners, times or attributes of any file, open devices, signal, slow down,
+// look into or change processes that are not below it. Linux: a seccomp filter made by libseccomp,
+// and Landlock for the files. Both hold for everything the child starts, and cannot be taken back.
+// It may send signals to its own process group alone, as kill(0, …): whoever wants to end another
+// group of its session joins it first (signal_group of base/process.h does).
 #pragma once
 
 #include <filesystem>
@@ -18,11 +19,13 @@ bool can_confine_files();
 
 class Confinement {
  public:
-  // Everything may be read; only what lies below `writable`, and /dev/null, may be written, removed
-  // or renamed. The folders must be there. Throws Error{kInternal} when the kernel refuses.
+  // Everything but devices may be read; only what lies below `writable`, and /dev/null, may be
+  // written, removed or renamed. The folders must be there. Throws Error{kInternal} when the kernel
+  // refuses.
   explicit Confinement(const std::vector<std::filesystem::path>& writable);
 
-  // In the child between fork and exec: makes only async-signal-safe calls. False, with errno set,
+  // In the child between fork and exec: makes only async-signal-safe calls. The caller, who must
+  // not lead a process group, becomes the leader of a session and a group. False, with errno set,
   // where the kernel refuses.
   bool apply() const;
 

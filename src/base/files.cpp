@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <openssl/evp.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -78,12 +79,29 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-fs::path make_folder(const fs::path& pattern) {
+fs::path make_private_folder(const fs::path& pattern) {
   std::string name = pattern.string();
   const std::lock_guard lock(remains().mutex);
   if (::mkdtemp(name.data()) == nullptr) cannot_write(pattern, reason());
   remains().folders.insert(name);
   return name;
+}
+
+// ".NAME.XXXXXX" beside path, with letters that nobody has taken: make(name) says 0, or -1 with
+// errno. With the mode that it is to keep: who is confined may not change one.
+template <typename Make>
+std::string make_beside(const fs::path& path, const Make& make) {
+  static constexpr std::string_view kLetters = "0123456789abcdefghijklmnopqrstuv";
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const std::string start = (folder / ("." + path.filename().string() + ".")).string();
+  for (;;) {
+    std::array<unsigned char, 6> random{};
+    if (::getrandom(random.data(), random.size(), 0) < 0) cannot_write(path, reason());
+    std::string name = start;
+    for (const unsigned char each : random) name += kLetters[each % kLetters.size()];
+    if (make(name.c_str()) >= 0) return name;
+    if (errno != EEXIST) cannot_write(path, reason());
+  }
 }
 
 }  // namespace
@@ -112,11 +130,13 @@ std::string read_file(const fs::path& path, std::uint64_t max_bytes) {
   return bytes;
 }
 
-void write_file_whole(const fs::path& path, std::string_view bytes) {
+void write_file_whole(const fs::path& path, std::string_view bytes, unsigned mode) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::string name = (folder / ("." + path.filename().string() + ".XXXXXX")).string();
-  Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
-  if (file.get() < 0) cannot_write(path, reason());
+  int made = -1;
+  const std::string name = make_beside(path, [&](const char* free) {
+    return made = ::open(free, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  });
+  Descriptor file(made);
   const auto fail = [&] {
     const std::string why = reason();
     ::unlink(name.c_str());
@@ -128,7 +148,7 @@ void write_file_whole(const fs::path& path, std::string_view bytes) {
     if (count < 0) fail();
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
-  if (::fchmod(file.get(), 0644) != 0 || ::fsync(file.get()) != 0) fail();
+  if (::fsync(file.get()) != 0) fail();
   if (::close(file.release()) != 0) fail();
   if (::rename(name.c_str(), path.c_str()) != 0) fail();
   sync_folder(folder);
@@ -167,13 +187,15 @@ std::string sha256_hex_of_file(const fs::path& path) {
 }
 
 TemporaryFolder::TemporaryFolder()
-    : path_(make_folder(fs::temp_directory_path() / "packmerger.XXXXXX")) {}
+    : path_(make_private_folder(fs::temp_directory_path() / "packmerger.XXXXXX")) {}
 
 TemporaryFolder TemporaryFolder::beside(const fs::path& target) {
   const fs::path whole = fs::absolute(target).lexically_normal();
   const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
-  return TemporaryFolder(
-      make_folder(clean.parent_path() / ("." + clean.filename().string() + ".XXXXXX")));
+  const std::lock_guard lock(remains().mutex);
+  const fs::path made = make_beside(clean, [](const char* free) { return ::mkdir(free, 0755); });
+  remains().folders.insert(made);
+  return TemporaryFolder(made);
 }
 
 TemporaryFolder::~TemporaryFolder() {
@@ -188,7 +210,6 @@ void TemporaryFolder::publish(const fs::path& target) {
   const fs::path whole = fs::absolute(target).lexically_normal();
   const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
   sync_tree(path_);
-  ::chmod(path_.c_str(), 0755);
   {
     const std::lock_guard lock(remains().mutex);
     const int why = rename_keeping(path_, clean);

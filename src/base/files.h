@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 std::string read_file(const fs::path& path, std::uint64_t max_bytes);
 
 // Writes bytes to path through a temporary sibling: write, fsync, rename, fsync of the folder.
-// Afterwards path holds all the bytes, or what it held before.
-void write_file_whole(const fs::path& path, std::string_view bytes);
+// Afterwards path holds all the bytes, or what it held before. The umask takes from the mode.
+void write_file_whole(const fs::path& path, std::string_view bytes, unsigned mode = 0644);
 
 // Renames a file or folder to `to`, which must not exist. Returns 0 or an errno (EEXIST, EXDEV, …).
 // Some network file systems know no renameat2 flags; there a hard link, or where even those are
@@ -40,7 +40,8 @@ class TemporaryFolder {
  public:
   // Below the system's temporary folder, mode 0700.
   TemporaryFolder();
-  // Beside `target` (same file system, so that it can be renamed to it): ".NAME.XXXXXX".
+  // Beside `target` (same file system, so that it can be renamed to it): ".NAME.XXXXXX", mode 0755
+  // less the umask.
   static TemporaryFolder beside(const fs::path& target);
 
   TemporaryFolder(const TemporaryFolder&) = delete;

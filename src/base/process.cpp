@@ -69,7 +69,7 @@ struct Pipe {
 [[noreturn]] void become(const ProcessSpec& spec, const Confinement* confinement, char* const* argv,
                          char* const* envp, const Pipe& out, const Pipe& err, const Pipe& failure,
                          pid_t parent) {
-  ::setpgid(0, 0);
+  if (confinement == nullptr) ::setpgid(0, 0);  // else it leads a session
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(127);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) ::signal(number, SIG_DFL);
@@ -137,7 +137,6 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   if (pid_ == 0)
     become(spec, confinement ? &*confinement : nullptr, argv.data(), envp.data(), out, err, failure,
            parent);
-  ::setpgid(pid_, pid_);  // both sides do it, so that it holds whoever runs first
   ::close(std::exchange(failure.write, -1));
   int cause = 0;
   ssize_t told = 0;
@@ -157,7 +156,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
 }
 
 ChildProcess::~ChildProcess() {
-  signal_group(SIGKILL);
+  packmerger::signal_group(pid_, SIGKILL);
   if (!status_) ::waitpid(pid_, nullptr, 0);
   forget_group(pid_);
   ::close(out_);
@@ -172,7 +171,16 @@ std::optional<ExitStatus> ChildProcess::poll() {
   return status_;
 }
 
-void ChildProcess::signal_group(int signal) const { ::kill(-pid_, signal); }
+void signal_group(pid_t group, int signal) {
+  if (::kill(-group, signal) == 0 || errno != EACCES) return;
+  // Who is confined may signal its own group only: a process of ours joins the group.
+  const pid_t joining = ::fork();
+  if (joining == 0) {
+    if (::setpgid(0, group) == 0) ::kill(0, signal);
+    ::_exit(0);
+  }
+  if (joining > 0) ::waitpid(joining, nullptr, 0);
+}
 
 ProcessResult run_process(const ProcessSpec& spec, double timeout_s, const Progress& progress,
                           const std::function<void(std::string_view)>& on_err_line,

@@ -37,6 +37,9 @@ struct ExitStatus {
 // A running child. Its standard input is /dev/null; standard output and error are pipes whose
 // reading ends are non-blocking. The destructor kills the whole group and reaps the child. The
 // child also gets SIGTERM when the thread that started it dies.
+// Sends signal to a process group of the caller's session, which a confined caller may do too.
+void signal_group(pid_t group, int signal);
+
 class ChildProcess {
  public:
   // Throws Error{kUnavailable} when the program is not there, Error{kInternal} when no process can
@@ -52,7 +55,7 @@ class ChildProcess {
 
   // The status once the child has ended; reaps it.
   std::optional<ExitStatus> poll();
-  void signal_group(int signal) const;
+  void signal_group(int signal) const { packmerger::signal_group(pid_, signal); }
 
  private:
   pid_t pid_ = -1;

@@ -8,6 +8,8 @@
 #include <system_error>
 #include <thread>
 
+#include "base/process.h"
+
 namespace packmerger {
 namespace {
 
@@ -36,7 +38,7 @@ void end_without_remains(int exit_code) {
   Remains& all = remains();
   // Held to the end, so that nothing new is made and nothing half removed is moved to its place.
   if (all.mutex.try_lock_for(kPatience)) {
-    for (const pid_t group : all.groups) ::kill(-group, SIGKILL);
+    for (const pid_t group : all.groups) signal_group(group, SIGKILL);
     for (int i = 0; i < kAttempts && !are_gone(all.folders); ++i)
       std::this_thread::sleep_for(kPause);
   }

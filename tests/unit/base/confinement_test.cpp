@@ -2,8 +2,13 @@
 #include "base/confinement.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <regex>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -30,6 +35,14 @@ class ConfinementTest : public ::testing::Test {
   }
   bool shell(const std::string& script) { return succeeds({"/bin/sh", "-c", script}); }
   bool python(const std::string& script) { return succeeds({"/usr/bin/python3", "-c", script}); }
+  // Whether a call of the C library is refused as the filter refuses it.
+  bool refused(const std::string& call) {
+    return python(
+        "import ctypes, os, struct, sys\n"
+        "libc = ctypes.CDLL(None, use_errno=True)\n"
+        "sys.exit(0 if " +
+        call + " == -1 and ctypes.get_errno() == 13 else 1)");
+  }
   std::string outside() const { return read_file(outside_, 100); }
 
   const TemporaryFolder holder_;
@@ -70,28 +83,80 @@ TEST_F(ConfinementTest, NoSocketsOfAnyKind) {
 }
 
 TEST_F(ConfinementTest, NoWayIntoOtherProcesses) {
-  EXPECT_TRUE(
-      python("import ctypes, os, sys\n"
-             "libc = ctypes.CDLL(None, use_errno=True)\n"
-             "sys.exit(0 if libc.ptrace(16, os.getppid(), 0, 0) == -1 and ctypes.get_errno() == 13 "
-             "else 1)"));
+  EXPECT_TRUE(refused("libc.ptrace(16, os.getppid(), 0, 0)"));
   EXPECT_FALSE(shell("unshare -r true"));
+  const std::string new_user_and_sigchld = "0x10000011";
+  EXPECT_TRUE(refused("libc.syscall(56, " + new_user_and_sigchld + ", 0, 0, 0, 0)"));
 }
 
 // Its own file is within reach of Landlock, whatever the kernel: here seccomp refuses.
 TEST_F(ConfinementTest, SeccompRefusesWhatLandlockDoesNotKnow) {
   ASSERT_TRUE(shell("echo own > own"));
   for (const char* attempt :
-       {"libc.truncate(b'own', 0)", "libc.chown(b'own', -1, -1)", "libc.utimes(b'own', None)",
-        "libc.setxattr(b'own', b'user.a', b'b', 1, 0)", "libc.removexattr(b'own', b'user.a')"})
-    EXPECT_TRUE(
-        python("import ctypes, sys\n"
-               "libc = ctypes.CDLL(None, use_errno=True)\n"
-               "refused = " +
-               std::string(attempt) +
-               " == -1 and ctypes.get_errno() == 13\n"
-               "sys.exit(0 if refused else 1)"))
+       {"libc.truncate(b'own', 0)", "libc.chmod(b'own', 0o777)",
+        "libc.fchmod(os.open('own', os.O_RDONLY), 0o777)", "libc.fchmodat(-100, b'own', 0o777, 0)",
+        "libc.syscall(452, -100, b'own', 0o777, 0)", "libc.chown(b'own', -1, -1)",
+        "libc.utimes(b'own', None)", "libc.setxattr(b'own', b'user.a', b'b', 1, 0)",
+        "libc.removexattr(b'own', b'user.a')", "libc.syscall(425, 8, bytes(120))"})
+    EXPECT_TRUE(refused(attempt)) << attempt;
+}
+
+TEST_F(ConfinementTest, TheModeOfAFileOutsideStays) {
+  fs::permissions(outside_, fs::perms::owner_read);
+  EXPECT_FALSE(shell("chmod 777 ../outside"));
+  EXPECT_FALSE(python("import os; os.truncate('../outside', 0)"));
+  EXPECT_EQ(fs::status(outside_).permissions(), fs::perms::owner_read);
+  EXPECT_EQ(outside(), "whole");
+}
+
+// Every way there is to signal a process of the same user, and to end or starve it otherwise.
+TEST_F(ConfinementTest, NobodyOutsideIsSignalled) {
+  const pid_t victim = ::fork();
+  if (victim == 0) {
+    ::pause();
+    ::_exit(0);
+  }
+  const std::string pid = std::to_string(victim);
+  for (const char* attempt :
+       {"libc.kill(PID, 9)", "libc.kill(-os.getpgid(PID), 9)", "libc.kill(-1, 9)",
+        "libc.syscall(200, PID, 9)", "libc.syscall(234, PID, PID, 9)",
+        "libc.syscall(129, PID, 9, bytes(128))", "libc.syscall(297, PID, PID, 9, bytes(128))",
+        "libc.syscall(434, PID, 0)",
+        "libc.syscall(424, os.open('/proc/PID', os.O_RDONLY), 9, 0, 0)", "libc.fcntl(0, 8, PID)",
+        "libc.fcntl(0, 10, 9)", "libc.fcntl(0, 15, struct.pack('ii', 1, PID))",
+        "libc.prlimit(PID, 0, struct.pack('QQ', 0, 0), None)", "libc.setpriority(0, PID, 19)",
+        "libc.sched_setaffinity(PID, 8, struct.pack('Q', 1))"})
+    EXPECT_TRUE(refused(std::regex_replace(std::string(attempt), std::regex("PID"), pid)))
         << attempt;
+  EXPECT_FALSE(python("import os; os.setpgid(0, os.getpgid(" + pid + "))"))
+      << "a group of another session";
+  EXPECT_EQ(::waitpid(victim, nullptr, WNOHANG), 0) << "it still lives";
+  ::kill(victim, SIGKILL);
+  ::waitpid(victim, nullptr, 0);
+}
+
+TEST_F(ConfinementTest, NoDeviceIsOpened) {
+  if (!can_confine_files()) GTEST_SKIP() << "this kernel has no Landlock";
+  EXPECT_TRUE(shell("head -c 1 /dev/urandom > own"));
+  EXPECT_TRUE(shell("! cat < /dev/ptmx & sleep 0.01; wait $!"));
+}
+
+// As prepare ends its slicer: the whole group of a child, though it may signal no other than its
+// own.
+TEST_F(ConfinementTest, ItsOwnChildrenAreEnded) {
+  const pid_t confined = ::fork();
+  if (confined == 0) {
+    if (!Confinement({own_}).apply()) ::_exit(1);
+    ProcessSpec spec;
+    spec.argv = {"/bin/sh", "-c", "sleep 1000 & echo; wait"};
+    const auto begin = std::chrono::steady_clock::now();
+    const ProcessResult result = run_process(spec, 0.2, Progress());
+    const bool soon = std::chrono::steady_clock::now() - begin < std::chrono::seconds(100);
+    ::_exit(result.timed_out && result.status.signal == SIGTERM && soon ? 0 : 2);
+  }
+  int status = -1;
+  ::waitpid(confined, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 TEST_F(ConfinementTest, AFolderThatIsNotThereIsTold) {

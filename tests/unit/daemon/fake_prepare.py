@@ -40,7 +40,7 @@ if "broken" in name:
     say("hint: Repair it in another program.")
     sys.exit(65)
 if "crash" in name:
-    os.kill(os.getpid(), signal.SIGSEGV)
+    os.kill(0, signal.SIGSEGV)  # its own group: no other may be signalled
 if "hang" in name:
     if os.fork() == 0:  # a grandchild that must end too
         with open(os.path.join(os.path.dirname(out), "grandchild.pid"), "w") as pid:
@@ -78,7 +78,7 @@ report = {
 }
 temporary = os.path.join(os.path.dirname(out), "." + os.path.basename(out) + ".temporary")
 os.mkdir(temporary)
-shutil.copy(profile, os.path.join(temporary, "profile.toml"))
+shutil.copyfile(profile, os.path.join(temporary, "profile.toml"))
 lines = 20000 if "long" in name else 5
 for tray in range(1, trays + 1):
     suffix = "" if tray == 1 else "-%d" % tray
