@@ -19,6 +19,7 @@ constexpr std::size_t kKeyBytes = 32;
 constexpr std::size_t kLongestName = 64;
 constexpr std::uint64_t kMostBytes = 1 << 20;
 constexpr int kMostPages = 20;
+constexpr unsigned kOwnerOnly = 0600;  // the file's mode
 
 std::string page_name(int number) { return "page " + std::to_string(number); }
 
@@ -58,7 +59,7 @@ void KeyRing::save(const std::vector<WebKey>& keys) const {
     list.push_back({{"name", key.name}, {"sha256", key.sha256}, {"made_s", key.made_s}});
     if (key.looks_only) list.back()["may"] = "look";
   }
-  write_file_whole(file_, list.dump(2) + "\n");
+  write_file_whole(file_, list.dump(2) + "\n", kOwnerOnly);
 }
 
 std::string KeyRing::add(const std::string& name) {

@@ -25,6 +25,7 @@
 #include "daemon/reload.h"
 #include "daemon/service_manager.h"
 #include "daemon/socket_server.h"
+#include "daemon/state_folder.h"
 #include "daemon/state_lock.h"
 
 namespace packmerger {
@@ -190,15 +191,6 @@ class Loop {
   std::string told_at_doors_;
 };
 
-void make_state_folder(const fs::path& state) {
-  std::error_code failed;
-  fs::create_directories(state / "jobs", failed);
-  if (failed)
-    throw Error(Fault::kCannotWrite,
-                "Cannot make the state folder " + state.string() + ": " + failed.message(),
-                "Name another one in the settings (state), or make it writable.");
-}
-
 std::exception_ptr caught(const std::function<void()>& work, const Log& log) {
   try {
     work();
@@ -213,8 +205,9 @@ std::exception_ptr caught(const std::function<void()>& work, const Log& log) {
 
 void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
   DaemonConfig config = read();
-  make_state_folder(config.state);
+  const std::vector<std::string> told = furnish_state_folder(config.state);
   const StateLock lock(config.state);
+  for (const std::string& line : told) log(line);
   Signals signals;
   JobStore store(config.state / "jobs.sqlite");
   Queue<Event> events;
