@@ -34,12 +34,12 @@ struct ExitStatus {
   bool ok() const { return code == 0 && signal == 0; }
 };
 
-// A running child. Its standard input is /dev/null; standard output and error are pipes whose
-// reading ends are non-blocking. The destructor kills the whole group and reaps the child. The
-// child also gets SIGTERM when the thread that started it dies.
 // Sends signal to a process group of the caller's session, which a confined caller may do too.
 void signal_group(pid_t group, int signal);
 
+// A running child. Its standard input is /dev/null; standard output and error are pipes whose
+// reading ends are non-blocking. The destructor kills the whole group and reaps the child. The
+// child also gets SIGTERM when the thread that started it dies.
 class ChildProcess {
  public:
   // Throws Error{kUnavailable} when the program is not there, Error{kInternal} when no process can
