@@ -25,6 +25,8 @@ struct PrepareConfig {
   double time_s = 3600;           // longest a job may take
   std::uint64_t memory_bytes = std::uint64_t{8} << 30;  // of address space, for each process
   int nice = 10;
+  std::optional<int> workers;  // models that are prepared at a time; not set: as many as suit the
+                               // machine (workers.h)
   std::int64_t seed = 1;
   std::optional<double> budget_s;  // packmerger prepare --budget
 };

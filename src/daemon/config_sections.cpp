@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "daemon/workers.h"
 
 namespace packmerger {
 namespace {
@@ -42,6 +43,8 @@ void read_prepare(TableReader& reader, const fs::path& file, PrepareConfig& prep
                  });
   reader.integer("nice", 0, 19, "an integer from 0 to 19",
                  [&](std::int64_t value) { prepare.nice = static_cast<int>(value); });
+  reader.integer("workers", 1, kMostWorkers, "an integer from 1 to 64",
+                 [&](std::int64_t value) { prepare.workers = static_cast<int>(value); });
   reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), "an integer from 0 up",
                  [&](std::int64_t value) { prepare.seed = value; });
   reader.number("budget_s", 0.001, 1e6, "a number above 0 to 1000000 (s)",

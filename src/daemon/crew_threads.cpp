@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "daemon/worker.h"
+#include "daemon/workers.h"
 #include "firmware_io/hotplug.h"
 
 namespace packmerger {
@@ -27,13 +28,12 @@ void tell_devices(const std::atomic<bool>& stop, Queue<Event>& events) {
 
 }  // namespace
 
-CrewThreads::CrewThreads(const std::vector<PrinterConfig>& printers, Crew& crew,
-                         Queue<Event>& events)
+CrewThreads::CrewThreads(const DaemonConfig& config, Crew& crew, Queue<Event>& events)
     : crew_(crew), events_(events) {
-  start(others_.emplace_back(), [&] { run_worker(crew.worker, events); });
+  start_workers(workers_of(config.prepare));
   start(others_.emplace_back(), [&] { run_worker(crew.checker, events); });
   start(others_.emplace_back(), [&] { tell_devices(stop_, events); });
-  for (const PrinterConfig& printer : printers) start_sender(printer);
+  for (const PrinterConfig& printer : config.printers) start_sender(printer);
   start_clerks();
 }
 
@@ -61,6 +61,11 @@ void CrewThreads::end_sender(const std::string& printer) {
   senders_.at(printer).thread.join();
   senders_.erase(printer);
   crew_.senders.erase(printer);
+}
+
+void CrewThreads::start_workers(int count) {
+  for (; workers_ < count; ++workers_)
+    start(others_.emplace_back(), [this] { run_worker(crew_.workers, events_); });
 }
 
 void CrewThreads::start_clerks() {
@@ -92,7 +97,7 @@ void CrewThreads::wait(const std::function<bool(const Member&)>& for_whom, doubl
 
 std::vector<std::string> CrewThreads::finish(const std::function<void()>& meanwhile) {
   stop_ = true;
-  crew_.worker.close();
+  crew_.workers.close();
   crew_.checker.close();
   for (auto& [name, orders] : crew_.senders) orders.close();
   for (auto& [folder, desk] : crew_.folders) desk.orders.close();

@@ -18,7 +18,7 @@ namespace packmerger {
 class CrewThreads {
  public:
   // crew and events must outlive it.
-  CrewThreads(const std::vector<PrinterConfig>& printers, Crew& crew, Queue<Event>& events);
+  CrewThreads(const DaemonConfig& config, Crew& crew, Queue<Event>& events);
   CrewThreads(const CrewThreads&) = delete;
   CrewThreads& operator=(const CrewThreads&) = delete;
   ~CrewThreads();
@@ -27,6 +27,9 @@ class CrewThreads {
   void start_sender(const PrinterConfig& printer);
   // Waits for a sender that has nothing to send: it ends at once.
   void end_sender(const std::string& printer);
+
+  // From now on at least so many workers prepare models; those that are there stay.
+  void start_workers(int count);
 
   // Folders that got orders since the last call get their clerks.
   void start_clerks();
@@ -51,6 +54,7 @@ class CrewThreads {
   Queue<Event>& events_;
   std::atomic<bool> stop_{false};  // of what has no orders
   std::list<Member> others_;
+  int workers_ = 0;                                 // among those
   std::map<std::string, Member> senders_;           // by printer
   std::map<std::filesystem::path, Member> clerks_;  // by folder
 };

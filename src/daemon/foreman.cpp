@@ -163,7 +163,7 @@ void Foreman::advance(double now_s) {
 // Thousands may wait to be prepared, and this is asked of each at every turn of the loop.
 bool Foreman::may_step(const JobRecord& job) const {
   if (job.state == JobState::kReceived || job.state == JobState::kPreparing)
-    return is_free(preparer_of(job));
+    return is_free(preparer_of(job)) && !preparing_.contains(job.id);
   return job.state != JobState::kSending;
 }
 

@@ -22,10 +22,11 @@ namespace packmerger {
 // Unix time.
 double wall_clock_s();
 
-// The queues through which the other threads get their orders. Programs have a worker of
-// their own: they are checked in seconds, and do not wait behind an hour of packing.
+// The queues through which the other threads get their orders. The workers share one, and are given
+// no more than they begin at once. Programs have a worker of their own: they are checked in
+// seconds, and do not wait behind an hour of packing.
 struct Crew {
-  Queue<PrepareOrder> worker;
+  Queue<PrepareOrder> workers;
   Queue<PrepareOrder> checker;
   std::map<std::filesystem::path, ClerkDesk>
       folders;  // watched ones, those jobs came from, and that of the jobs
@@ -50,7 +51,7 @@ struct LiveJob {
   std::string trouble;         // why its file could not be taken or filed so far; empty: nothing
 };
 
-// Which of the two threads has a job.
+// Who has a job: one of the workers, or the one for programs.
 enum class Preparer { kWorker, kChecker };
 
 class Foreman {
@@ -208,7 +209,7 @@ class Foreman {
   Log log_;
   Cleaner cleaner_;
   std::map<std::int64_t, LiveJob> live_;
-  std::map<std::int64_t, Preparer> preparing_;          // the jobs with the workers, one each
+  std::map<std::int64_t, Preparer> preparing_;          // the jobs with the workers
   std::map<std::string, std::int64_t> sending_;         // the job with each printer's sender
   std::map<std::string, std::string> folder_troubles_;  // by printer, as their clerks told
   std::map<std::string, std::string> folder_told_;      // by printer, what was last logged of them

@@ -80,7 +80,7 @@ void Foreman::start_comparing(JobRecord job, const PrinterConfig& wish) {
   store_.save(job, "comparing the printers");
   preparing_[job.id] = Preparer::kWorker;
   order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
-  crew_.worker.push(std::move(order));
+  crew_.workers.push(std::move(order));
   say(job, "comparing the printers");
 }
 

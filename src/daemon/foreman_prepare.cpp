@@ -7,6 +7,7 @@
 #include "daemon/job_folder.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
+#include "daemon/workers.h"
 
 namespace packmerger {
 namespace {
@@ -69,14 +70,15 @@ Preparer Foreman::preparer_of(const JobRecord& job) {
 }
 
 bool Foreman::is_free(Preparer preparer) const {
-  return std::none_of(preparing_.begin(), preparing_.end(),
-                      [&](const auto& item) { return item.second == preparer; });
+  const auto busy = std::count_if(preparing_.begin(), preparing_.end(),
+                                  [&](const auto& item) { return item.second == preparer; });
+  return busy < (preparer == Preparer::kChecker ? 1 : workers_of(config_.prepare));
 }
 
 void Foreman::start_preparing(const JobRecord& waiting) {
   const PrinterConfig* printer = config_.printer(waiting.printer);
   const Preparer preparer = preparer_of(waiting);
-  if (printer == nullptr || !is_free(preparer)) return;
+  if (printer == nullptr || !is_free(preparer) || preparing_.contains(waiting.id)) return;
   if (printer->is_auto()) return start_comparing(waiting, *printer);
   JobRecord job = waiting;
   std::vector<std::string> command;
@@ -98,7 +100,7 @@ void Foreman::start_preparing(const JobRecord& waiting) {
   order.argv = std::move(command);
   order.limits = config_.prepare;
   order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
-  (preparer == Preparer::kChecker ? crew_.checker : crew_.worker).push(std::move(order));
+  (preparer == Preparer::kChecker ? crew_.checker : crew_.workers).push(std::move(order));
   say(job, "preparing");
 }
 

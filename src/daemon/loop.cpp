@@ -27,6 +27,7 @@
 #include "daemon/socket_server.h"
 #include "daemon/state_folder.h"
 #include "daemon/state_lock.h"
+#include "daemon/workers.h"
 
 namespace packmerger {
 namespace {
@@ -141,6 +142,7 @@ class Loop {
     const WatchConfig rules = config_.watch;
     const double retry_s = config_.retry_s;
     reload_.read();
+    threads_.start_workers(workers_of(config_.prepare));
     if (rules != config_.watch || retry_s != config_.retry_s)
       for (const PrinterConfig& printer : config_.printers) watch(printer);
     manager_.ready();
@@ -215,7 +217,7 @@ void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
   KeyRing keys(config.state / "keys.json");
   Foreman foreman(config, store, crew, log);
   foreman.recover();
-  CrewThreads threads(config.printers, crew, events);
+  CrewThreads threads(config, crew, events);
   std::exception_ptr escaped;
   std::vector<std::string> hanging;
   {

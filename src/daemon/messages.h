@@ -25,7 +25,7 @@ struct Failure {
   std::string hint;
 };
 
-// To a worker, which prepares one job after the other.
+// To the workers, each of which prepares one job after the other.
 struct CompareOrder {
   std::string printer;
   std::vector<std::string> argv;  // of the child process

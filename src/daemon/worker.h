@@ -1,5 +1,5 @@
-// The threads that do the daemon's slow work: the worker prepares jobs in child processes, a sender
-// per printer prints. Each takes orders from its queue until that is closed, and answers through
+// The threads that do the daemon's slow work: workers prepare jobs in child processes, a sender per
+// printer prints. Each takes orders from its queue until that is closed, and answers through
 // `events`.
 #pragma once
 
@@ -12,7 +12,8 @@
 
 namespace packmerger {
 
-// Each runs on the calling thread until its orders are closed and done.
+// Each runs on the calling thread until its orders are closed and done. Workers may share their
+// orders: each job has a folder of its own, below which alone its child may write.
 void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events);
 void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer);
 

@@ -82,11 +82,11 @@ class RunningDaemon : public testing::Test {
 
   fs::path path(const std::string& name) const { return folder_.path() / name; }
 
-  void configure(const std::string& port, bool simulated = true) {
+  void configure(const std::string& port, bool simulated = true, int workers = 1) {
     std::ofstream(path("d.toml"))
         << "state = \"state\"\nretry_s = 1\n[prepare]\nprogram = \""
         << (source_ / "tests/unit/daemon/fake_prepare.py").string()
-        << "\"\nnice = 0\n[watch]\nstill_s = 0.2\ngive_up_s = 2\n"
+        << "\"\nnice = 0\nworkers = " << workers << "\n[watch]\nstill_s = 0.2\ngive_up_s = 2\n"
         << "rescan_s = 1\n[printer.m]\nprofile = \"quick.toml\"\nport = \"" << port
         << "\"\napprove = \"auto\"\nsimulated = " << (simulated ? "true" : "false")
         << "\n[printer.o]\nprofile = \"objet30\"\nhandoff_folder = "

@@ -48,6 +48,7 @@ class Workshop {
   Workshop() {
     config_.state = folder_.path() / "state";
     config_.prepare.program = "packmerger";
+    config_.prepare.workers = 1;
     config_.retry_s = 10;
     config_.printers = {printer(folder_.path(), "hand", Dialect::kHandoff),
                         printer(folder_.path(), "real", Dialect::kGcode),
@@ -85,7 +86,7 @@ class Workshop {
     foreman_->advance(now_s_);
   }
 
-  std::optional<PrepareOrder> prepare_order() { return crew_->worker.try_pop(); }
+  std::optional<PrepareOrder> prepare_order() { return crew_->workers.try_pop(); }
   std::optional<PrepareOrder> check_order() { return crew_->checker.try_pop(); }
   std::optional<SendOrder> send_order(const std::string& name) {
     return crew_->senders.at(name).try_pop();
