@@ -72,6 +72,7 @@ void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
   job.hint = hint;
   job.ended_s = wall_clock_s();
   job.filing_done = job.input.empty();
+  if (const auto known = live_.find(job.id); known != live_.end()) known->second.trouble.clear();
   store_.save(job, note.empty() ? reason : note, printer);
   say(job, std::string(state_name(state)) + (reason.empty() ? "" : ": " + reason));
 }
@@ -221,7 +222,8 @@ void Foreman::start_sending(const JobRecord& approved) {
   crew_.senders.at(job.printer)
       .push({job.id, job.folder, job.next_tray, handoff_name(job), told_file(job), live.control,
              job.tray_files});
-  say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
+  if (live.trouble.empty())  // otherwise it was told, and is tried again
+    say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
 }
 
 void Foreman::stop() {

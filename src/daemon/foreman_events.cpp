@@ -1,5 +1,6 @@
 // How the foreman takes what the other threads tell.
 #include <algorithm>
+#include <utility>
 
 #include "base/names.h"
 #include "daemon/foreman.h"
@@ -99,6 +100,8 @@ void Foreman::on(const SendProgress& event) {
   if (found == live_.end() || !found->second.control) return;
   found->second.print = event.report;
   if (event.report.state == PrintState::kConnecting) return;
+  if (!std::exchange(found->second.trouble, {}).empty())
+    if (const std::optional<JobRecord> job = store_.find(event.job)) say(*job, "started after all");
   for (const auto& [printer, job] : sending_)
     if (job == event.job) reached_[printer] = true;
 }
@@ -195,7 +198,8 @@ void Foreman::not_started(JobRecord job, const SendEnded& event) {
   job.hint = event.failure.hint;
   store_.save(job, job.reason, &record);
   live.retry_s = retry_at(live.failures++);
-  say(job, "not started: " + job.reason + ". It is tried again.");
+  if (std::exchange(live.trouble, job.reason) != job.reason)
+    say(job, "not started: " + job.reason + ". It is tried again.");
 }
 
 }  // namespace packmerger

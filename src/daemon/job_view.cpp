@@ -82,11 +82,14 @@ std::string state_text(const Foreman& foreman, const JobRecord& job, const LiveJ
   return {};
 }
 
-// One short phrase for people: what the job does or waits for, and what is wrong with its file.
+// One short phrase for people: what the job does or waits for, and what is wrong with its file. Why
+// it was not sent yet is its reason, and is history while it is sent.
 std::string status_text(const Foreman& foreman, const JobRecord& job) {
   const LiveJob* live = foreman.live(job.id);
   const std::string text = state_text(foreman, job, live);
-  return live == nullptr || live->trouble.empty() ? text : text + " (" + live->trouble + ")";
+  const bool is_told = job.state == JobState::kApproved || job.state == JobState::kSending;
+  const bool adds = live != nullptr && !live->trouble.empty() && !is_told;
+  return adds ? text + " (" + live->trouble + ")" : text;
 }
 
 json heaters_view(const PrintReport& print) {

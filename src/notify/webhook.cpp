@@ -11,6 +11,7 @@
 #include <deque>
 #include <memory>
 #include <random>
+#include <utility>
 
 namespace packmerger {
 namespace {
@@ -132,7 +133,7 @@ void Webhook::run() {
   Courier courier;
   std::deque<Letter> waiting;
   double next_s = 0;
-  bool is_told = false;  // that it does not answer; once until it does
+  std::string told;  // why it takes nothing; empty: it does
   const auto give_up = [&](const std::string& why) {
     dead_.keep(settings_.url, why, waiting.front().body);
     waiting.pop_front();
@@ -142,7 +143,7 @@ void Webhook::run() {
     while (std::optional<Notice> notice = queue_.try_pop())
       waiting.push_back({std::move(notice->body), new_delivery()});
     while (waiting.size() > limits_.most_waiting) give_up("too many messages waited");
-    if (ends && (waiting.empty() || is_told || now_s() > ends_s_)) break;
+    if (ends && (waiting.empty() || !told.empty() || now_s() > ends_s_)) break;
     const double wait_s = waiting.empty() ? 1e6 : next_s - now_s();
     if (wait_s > 0) {
       pollfd news{queue_.fd(), POLLIN, 0};
@@ -152,13 +153,12 @@ void Webhook::run() {
     Letter& letter = waiting.front();
     const Courier::Outcome outcome = courier.bring(letter, *this);
     if (outcome.why.empty()) {
-      if (is_told) tell_("webhook " + settings_.url + ": answers again");
-      is_told = false;
+      if (!std::exchange(told, {}).empty()) tell_("webhook " + settings_.url + ": answers again");
       waiting.pop_front();
       continue;
     }
-    if (!is_told) tell_("webhook " + settings_.url + ": " + outcome.why);
-    is_told = true;
+    if (std::exchange(told, outcome.why) != outcome.why)
+      tell_("webhook " + settings_.url + ": " + outcome.why);
     next_s = now_s() + limits_.first_retry_s * (1 << letter.tries);
     if (++letter.tries < limits_.tries && outcome.again) continue;
     next_s = 0;

@@ -88,6 +88,23 @@ TEST(Webhook, GivesUpAfterItsTriesAndGoesOn) {
   EXPECT_THAT(read_file(folder.path() / "dead", 1 << 20), HasSubstr("HTTP 500"));
 }
 
+TEST(Webhook, ATroubleIsToldOnceAndAgainWhenItChangesOrEnds) {
+  const TemporaryFolder folder;
+  DeadLetters dead(folder.path() / "dead");
+  Receiver receiver;
+  receiver.statuses = {500, 500, 503, 503, 503};
+  std::vector<std::string> told;  // by the webhook's thread alone
+  {
+    Webhook webhook({receiver.url(), ""}, dead,
+                    [&](const std::string& line) { told.push_back(line); },
+                    {.answer_s = 5, .first_retry_s = 0.01, .tries = 9, .most_waiting = 10});
+    webhook.push({"t", "1"});
+    EXPECT_TRUE(wait_for_bodies(receiver, 6));
+  }
+  EXPECT_THAT(
+      told, ElementsAre(HasSubstr("HTTP 500"), HasSubstr("HTTP 503"), HasSubstr("answers again")));
+}
+
 TEST(Webhook, TheOldestGoWhenTooManyWait) {
   const TemporaryFolder folder;
   DeadLetters dead(folder.path() / "dead");
