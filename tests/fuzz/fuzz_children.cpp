@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -18,20 +17,13 @@
 #include "daemon/job_folder.h"
 #include "daemon/progress_file.h"
 #include "daemon/worker.h"
+#include "fuzz/scratch.h"
 
 namespace {
 
 using namespace packmerger;
-
-const fs::path& folder() {
-  static const TemporaryFolder folder;
-  return folder.path();
-}
-
-void put(const fs::path& file, std::string_view text) {
-  std::ofstream(file, std::ios::binary)
-      .write(text.data(), static_cast<std::streamsize>(text.size()));
-}
+using fuzz::folder;
+using fuzz::put;
 
 // A daemon without threads, with one entry that compares and one job that is being compared.
 struct Office {

@@ -15,21 +15,13 @@
 #include "daemon/config.h"
 #include "daemon/foreman.h"
 #include "daemon/job_folder.h"
+#include "fuzz/scratch.h"
 
 namespace {
 
 using namespace packmerger;
-
-const fs::path& folder() {
-  static const TemporaryFolder folder;
-  return folder.path();
-}
-
-// Without the care for a power cut that the daemon takes.
-void put(const fs::path& file, std::string_view text) {
-  std::ofstream(file, std::ios::binary)
-      .write(text.data(), static_cast<std::streamsize>(text.size()));
-}
+using fuzz::folder;
+using fuzz::put;
 
 template <typename Read>
 void refused_or_read(Fault expected, const Read& read) {
