@@ -35,7 +35,7 @@ constexpr double kThin = 0.5;
 // Between sheets of the hull that would touch, of the tolerance.
 constexpr double kGap = 0.01;
 // By how much a hull is coarsened before it is cut anew, of the tolerance.
-constexpr std::array<double, 7> kMends = {0, 0, 0.02, 0.05, 0.1, 0.2, 0.3};
+constexpr std::array<double, 9> kMends = {0, 0, 0, 0, 0.02, 0.05, 0.1, 0.2, 0.3};
 // Components smaller than this many voxels are grains of the grid, not of the model.
 constexpr double kGrain = 8;
 

@@ -23,6 +23,8 @@ constexpr double kChanged = 0.01;
 // a surface, nearer than this part of the diagonal, they need not.
 constexpr int kLattice = 16;
 constexpr double kBeside = 1e-4;
+// How often what rounding made cross anew is cut again: mostly once or twice.
+constexpr int kMostCuts = 6;
 
 // Whether hull is around what mesh winds around, asked at points all over the box. They are off its
 // middle and its round fractions, where models have their faces.
@@ -56,7 +58,8 @@ Mesh unite_bodies(Mesh mesh, Warnings& warnings, const Progress& progress) {
   if (!self_intersects(mesh)) return mesh;
   progress.report("uniting", 0);
   const Progress silent({}, progress.cancelled());
-  auto hull = outer_hull(mesh, kGap * bounding_box(mesh).diagonal().norm(), silent);
+  const double gap_mm = kGap * bounding_box(mesh).diagonal().norm();
+  auto hull = outer_hull(mesh, gap_mm, silent);
   if (!hull || !is_around_the_same(*hull, mesh, silent)) {
     warnings.push_back(
         {"shape_changed",
@@ -66,6 +69,11 @@ Mesh unite_bodies(Mesh mesh, Warnings& warnings, const Progress& progress) {
   }
   const double volume = std::abs(volume_mm3(*hull) / volume_mm3(mesh) - 1);
   if (volume < kTouching) return mesh;
+  for (int cuts = 1; cuts < kMostCuts && self_intersects(*hull); ++cuts) {
+    auto next = outer_hull(*hull, gap_mm, silent);
+    if (!next || !is_around_the_same(*next, mesh, silent)) break;
+    hull = std::move(next);
+  }
   const double area = std::abs(area_mm2(*hull) / area_mm2(mesh) - 1);
   const std::string told =
       "Bodies of the model overlap and were made one, as slicers do: counted once, its volume "
