@@ -27,13 +27,19 @@ struct BothTurns {
 BothTurns estimate_both_turns(const Profile& profile, const std::vector<Tray>& trays,
                               const Assembly& assembly, const Progress& progress);
 
-// Money for material, machine hours and labour: gluing the joints and clearing the trays.
-double price_of(const CostSettings& rates, double model_g, double support_g, double time_s,
-                const Assembly& assembly, int trays);
+// What is to be paid, in the profile's currency.
+struct Money {
+  double material = 0;
+  double machine = 0;  // its hours
+  double hands = 0;    // gluing the joints, cleaning the trays
 
-// Fills parts, assembly_min, cost and currency from the time, material and trays that stand in the
-// estimate. cost = material + machine hours + labour; labour = gluing (assembly_min) + clearing
-// each tray.
+  double sum() const { return material + machine + hands; }
+};
+Money price_of(const CostSettings& rates, double model_g, double support_g, double time_s,
+               const Assembly& assembly, int trays);
+
+// Fills parts, assembly_min (gluing and cleaning), the cost and its three sums, and currency from
+// the time, material and trays that stand in the estimate.
 void price(Estimate& estimate, const Profile& profile, const Assembly& assembly);
 
 }  // namespace packmerger

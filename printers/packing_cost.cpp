@@ -69,7 +69,8 @@ double printer_cost(const Profile& profile, const TrayMeasure& tray) {
                                      : predict_fdm(profile, tray);
   const Assembly assembly{tray.parts, std::max(0, tray.parts - 1)};
   return price_of(profile.cost, predicted.model_g, predicted.support_g, predicted.time_s, assembly,
-                  1);
+                  1)
+      .sum();
 }
 
 }  // namespace

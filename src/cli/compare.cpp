@@ -7,6 +7,7 @@
 #include "cli/late_stop.h"
 #include "cli/plan_options.h"
 #include "cli/verb.h"
+#include "job/advice.h"
 #include "job/comparison_table.h"
 #include "job/plan.h"
 #include "tray/job_json.h"
@@ -36,6 +37,9 @@ void run(const Arguments& arguments) {
   if (!arguments.json) fmt::print("{}\n", sizes_of(jobs.front()));
   for (const Job& job : jobs) {
     all[job.profile.id] = comparison_json(job.estimates);
+    const Advice told = advice(job.estimates);
+    all[job.profile.id]["advice"] =
+        advice_json(told.variant ? variant_name(*told.variant) : "", told.text);
     if (!arguments.json) fmt::print("{}\n", comparison_table(job.estimates, title_of(job.profile)));
     for (const Warning& warning : job.warnings)
       fmt::print(stderr, "warning: {} ({})\n", printable(warning.text), warning.code);
@@ -53,7 +57,7 @@ void add_compare(CLI::App& program) {
   verb->add_option("--profile", arguments->profiles, "a profile's id or path; may be given again")
       ->type_name("PROFILE")
       ->take_all();
-  verb->add_flag("--json", arguments->json, "prints {profile id: estimates}");
+  verb->add_flag("--json", arguments->json, "prints {profile id: estimates, and advice}");
   verb->callback([arguments] { run(*arguments); });
 }
 

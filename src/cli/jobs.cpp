@@ -17,6 +17,7 @@ struct Arguments {
   DaemonArguments daemon;
   std::int64_t id = 0;
   int limit = 100;
+  std::string variant;
   std::int64_t before = 0;  // 0: from the newest on
 };
 
@@ -189,7 +190,9 @@ void show(const Arguments& arguments) {
 }
 
 void change(const Arguments& arguments, const std::string& verb) {
-  const json job = ask(arguments.daemon, {{"verb", "jobs." + verb}, {"id", arguments.id}});
+  json request = {{"verb", "jobs." + verb}, {"id", arguments.id}};
+  if (verb == "prepare") request["variant"] = arguments.variant;
+  const json job = ask(arguments.daemon, request);
   if (arguments.daemon.json) return print_json(job);
   fmt::print("Job {} ({}): {}\n", job.at("id").get<std::int64_t>(), text_of(job, "name"),
              text_of(job, "status"));
@@ -224,6 +227,11 @@ void add_jobs(CLI::App& program) {
     return one;
   };
   with_id(action("show", "Everything about one job"))->callback([arguments] { show(*arguments); });
+  CLI::App* prepare = with_id(action("prepare", "Has a job's model prepared in another way"));
+  prepare->add_option("--variant", arguments->variant, "how: packed, hollow, solid or cheapest")
+      ->required()
+      ->check(CLI::IsMember({"packed", "hollow", "solid", "cheapest"}));
+  prepare->callback([arguments] { change(*arguments, "prepare"); });
   for (const auto& [name, help] :
        {std::pair{"approve", "Lets a job be printed; also ends a hold"},
         std::pair{"hold", "Keeps a job from being printed until it is approved"},

@@ -75,6 +75,13 @@ json change_job(Foreman& foreman, const json& request) {
   return job_view(foreman, (foreman.*act)(id_of(request)));
 }
 
+json prepare_job(Foreman& foreman, const json& request) {
+  const auto variant = request.find("variant");
+  if (variant == request.end() || !variant->is_string())
+    not_understood("The request needs a variant");
+  return job_view(foreman, foreman.prepare(id_of(request), variant->get<std::string>()));
+}
+
 json list_printers(Foreman& foreman, const json&) {
   json printers = json::array();
   for (const PrinterConfig& printer : foreman.config().printers)
@@ -120,6 +127,7 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
       {"jobs.hold", change_job<&Foreman::hold>},
       {"jobs.cancel", change_job<&Foreman::cancel>},
       {"jobs.again", change_job<&Foreman::again>},
+      {"jobs.prepare", prepare_job},
       {"jobs.delete", change_job<&Foreman::remove>},
       {"printers.list", list_printers},
       {"storage", [](Foreman& foreman, const json&) { return storage_view(foreman); }},

@@ -7,6 +7,7 @@
 #include "daemon/job_folder.h"
 #include "daemon/json_values.h"
 #include "daemon/move_file.h"
+#include "tray/comparison_json.h"
 
 namespace packmerger {
 namespace {
@@ -23,16 +24,20 @@ constexpr std::int64_t kMostPieces = 1000000;
   throw Error(Fault::kBadInput, "What was prepared cannot be understood: " + what, kPrepareAnew);
 }
 
-// A way that does not fit has no figures: null, or none at all.
+// A way that does not fit has no figures: null, or none at all. What a program does not tell is null
+// too, but never its time.
 void check_way(const std::string& name, const json& way) {
   if (!way.is_object()) refuse("the estimate " + printable(name) + " is no object");
   const auto fits = way.find("fits");
   if (fits == way.end() || !fits->is_boolean()) refuse("fits is neither true nor false");
   const auto has = [&](const char* key) {
     const auto found = way.find(key);
-    return found != way.end() && (fits->get<bool>() || !found->is_null());
+    return found != way.end() && !found->is_null();
   };
-  for (const char* key : {"time_s", "cost", "model_g", "support_g"})
+  if (fits->get<bool>() && way.contains("time_s") && way.at("time_s").is_null())
+    refuse("the estimate's time_s is null");
+  for (const char* key : {"time_s", "cost", "model_g", "support_g", "material_cost", "machine_cost",
+                          "hands_cost", "model_mm3", "support_mm3", "assembly_min"})
     if (has(key)) {
       const json& figure = way.at(key);
       if (!figure.is_number() || figure.get<double>() < 0 || figure.get<double>() > kLargest)
@@ -64,9 +69,20 @@ void check_estimates(const json& ways) {
 std::string compared_estimates(std::string_view out) {
   const json all = parse_child_json(out);
   if (!all.is_object() || all.size() != 1) refuse("the comparison names no printer");
-  const json& ways = *all.begin();
+  json ways = *all.begin();
+  if (ways.is_object()) ways.erase("advice");  // the daemon finds it out itself
   check_estimates(ways);
   return json_text(ways);
+}
+
+std::optional<Comparison> comparison_in(const std::string& estimates) {
+  const json ways = json::parse(estimates, nullptr, false);
+  if (!ways.is_object()) return std::nullopt;
+  try {
+    return comparison_of(ways);
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
 }
 
 std::int64_t whole_number_in(const json& object, const char* key, std::int64_t least,

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "model/estimate.h"
 
 namespace packmerger {
 
@@ -19,6 +22,10 @@ void check_estimates(const nlohmann::json& ways);
 // What `packmerger compare --json` printed of its one profile: those estimates as JSON text. Throws
 // Error{kBadInput}.
 std::string compared_estimates(std::string_view out);
+
+// The estimates of a job's row or of a comparison, as check_estimates() lets them pass; nothing
+// where the text is none, or a way that fits lacks its time or cost.
+std::optional<Comparison> comparison_in(const std::string& estimates);
 
 // A whole number from `least` to `most`, or Error{kBadInput} that names the key.
 std::int64_t whole_number_in(const nlohmann::json& object, const char* key, std::int64_t least,

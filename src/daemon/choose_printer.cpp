@@ -1,54 +1,35 @@
 #include "daemon/choose_printer.h"
 
 #include <algorithm>
-#include <array>
 #include <tuple>
 
+#include "daemon/child_json.h"
+#include "job/advice.h"
+
 namespace packmerger {
-namespace {
 
 using nlohmann::json;
 
-constexpr std::array<const char*, 3> kWays = {"solid", "hollow", "packed"};
-
-// Nothing where that way does not fit, or its figures are missing.
-const json* figures_of(const json& ways, const std::string& way) {
-  const auto found = ways.find(way);
-  if (found == ways.end() || !found->is_object()) return nullptr;
-  for (const char* key : {"time_s", "cost"})
-    if (!found->contains(key) || !found->at(key).is_number()) return nullptr;
-  return &*found;
-}
-
-std::string cheapest_way(const json& ways) {
-  std::string best = "packed";
-  for (const char* way : kWays) {
-    const json* one = figures_of(ways, way);
-    const json* other = figures_of(ways, best);
-    if (one != nullptr && (other == nullptr || one->at("cost") < other->at("cost"))) best = way;
-  }
-  return best;
-}
-
-}  // namespace
-
 void take_estimates(PrinterOffer& offer, const std::string& estimates, const std::string& variant) {
-  const json ways = json::parse(estimates, nullptr, false);
-  if (!ways.is_object()) {
+  const std::optional<Comparison> ways = comparison_in(estimates);
+  const std::optional<Variant> wanted = variant_named(variant);
+  if (!ways || !wanted) {
     offer.why_not = "the comparison tells no figures";
     return;
   }
-  offer.variant = variant == "cheapest" ? cheapest_way(ways) : variant;
-  const json* figures = figures_of(ways, offer.variant);
-  if (figures == nullptr) {
+  const Variant way =
+      *wanted == Variant::kCheapest ? cheapest(*ways).value_or(Variant::kPacked) : *wanted;
+  offer.variant = variant_name(way);
+  const std::optional<Estimate>& figures = estimate_of(*ways, way);
+  if (!figures) {
     offer.why_not = "it does not fit, " + offer.variant;
     return;
   }
-  offer.time_s = figures->at("time_s");
-  offer.cost = figures->at("cost");
-  offer.currency = figures->value("currency", "");
-  offer.parts = figures->value("parts", 1);
-  offer.trays = figures->value("trays", 1);
+  offer.time_s = figures->time_s;
+  offer.cost = figures->cost;
+  offer.currency = figures->currency;
+  offer.parts = figures->parts;
+  offer.trays = figures->trays;
 }
 
 std::optional<std::size_t> best_offer(const std::vector<PrinterOffer>& offers, Prefer prefer) {

@@ -70,6 +70,9 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what());
   }
+  // gluing parts of a plastic thread costs more than it saves, most often
+  if (printer.abilities.technology == Technology::kFdm && !printer.options.variant)
+    printer.options.variant = "cheapest";
   if (printer.hands_over() && printer.handoff_folder.empty())
     refuse(file, line, table + " needs the key handoff_folder: this printer takes no job by wire");
   if (printer.hands_over() && !printer.port.empty())

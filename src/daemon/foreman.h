@@ -90,6 +90,9 @@ class Foreman {
   // A new job from an ended one: its stored program, which counts as approved where that job was,
   // or its filed model, prepared anew.
   JobRecord again(std::int64_t id);
+  // Has a model prepared in another way (packed, hollow, solid, cheapest): a job of which nothing
+  // is printed yet, which loses its approval, or a new one from an ended one.
+  JobRecord prepare(std::int64_t id, const std::string& variant);
   JobRecord remove(std::int64_t id);  // the folder of one that ended; it stays in the history
   PrinterRecord clear(const std::string& printer);
   // Pauses the print that runs there and lets no other start; or the contrary.
@@ -180,7 +183,7 @@ class Foreman {
   void end_untouched(JobRecord job, const SendEnded& event);
 
   JobRecord print_again(const JobRecord& old);
-  JobRecord prepare_again(const JobRecord& old);
+  JobRecord prepare_again(const JobRecord& old, const std::string& wanted = {});
   JobRecord with_file(const JobRecord& old) const;
 
   double retry_at(int failures) const;

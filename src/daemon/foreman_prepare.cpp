@@ -37,6 +37,7 @@ ModelOptions Foreman::model_options(const PrinterConfig& printer, const PrinterC
   if (job.with_settings)
     options =
         laid_over(options, read_model_settings(settings_beside(job.input), printer.abilities));
+  if (!job.wanted.empty()) options.variant = job.wanted;
   return options;
 }
 

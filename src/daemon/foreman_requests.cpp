@@ -2,10 +2,12 @@
 #include <algorithm>
 
 #include "base/names.h"
+#include "daemon/child_json.h"
 #include "daemon/foreman.h"
 #include "daemon/job_file.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
+#include "job/advice.h"
 
 namespace packmerger {
 namespace {
@@ -26,8 +28,32 @@ JobRecord like(const JobRecord& old) {
   job.again_of = old.id;
   job.chosen_by = old.chosen_by;
   job.choice = old.choice;
+  job.wanted = old.wanted;
   job.received_s = wall_clock_s();
   return job;
+}
+
+void check_variant(const JobRecord& job, const std::string& variant) {
+  if (!variant_named(variant))
+    throw Error(Fault::kUsage, "There is no variant " + printable(variant),
+                "It is one of packed, hollow, solid, cheapest.");
+  if (is_program(job.name))
+    throw Error(Fault::kUsage, title(job) + " is a program, printed as it is",
+                "Only models are prepared in another way.");
+  const std::optional<Comparison> ways = comparison_in(job.estimates);
+  if (ways && !estimate_of(*ways, *variant_named(variant)))
+    throw Error(Fault::kUsage, title(job) + " does not fit the printer, " + variant,
+                "packmerger jobs show tells which ways fit.");
+}
+
+// Nor does what somebody approved count any more. Its figures stay until there are new ones.
+void forget_what_was_prepared(JobRecord& job) {
+  job.trays = 0;
+  job.tray_files.clear();
+  job.variant.clear();
+  job.approved = job.at_once = job.pays = false;
+  job.reason.clear();
+  job.doubt.clear();
 }
 
 }  // namespace
@@ -145,10 +171,38 @@ JobRecord Foreman::with_file(const JobRecord& old) const {
   JobRecord job = old;
   while (job.filed.empty() && job.again_of != 0) job = get(job.again_of);
   if (job.filing_done) return job;  // whether it is still there, its clerk finds out
+  if (!job.input.empty())
+    throw Error(Fault::kBusy, "The model of job " + std::to_string(job.id) + " is just being filed",
+                "Try again in a moment.");
   throw Error(
       Fault::kNoInput,
       "Neither the program nor the model of job " + std::to_string(old.id) + " is there any more",
       "Drop the model into the watched folder again.");
+}
+
+JobRecord Foreman::prepare(std::int64_t id, const std::string& variant) {
+  JobRecord job = get(id);
+  check_variant(job, variant);
+  if (has_ended(job.state)) return prepare_again(job, variant);
+  const bool waits = job.state == JobState::kReady || job.state == JobState::kReceived ||
+                     (job.state == JobState::kApproved && job.next_tray == 1);
+  if (!waits)
+    senseless(job, " and cannot be prepared in another way now",
+              "Wait until it is ready, or cancel it and prepare it again.");
+  if (job.input.empty()) {  // it was to print the program of another job
+    const JobRecord anew = prepare_again(job, variant);
+    end(job, JobState::kCancelled,
+        "prepared " + variant + " instead, as job " + std::to_string(anew.id), "");
+    return anew;
+  }
+  const std::string note =
+      "to be prepared " + variant + (job.approved || job.at_once ? ", and no longer approved" : "");
+  job.state = JobState::kReceived;
+  job.wanted = variant;
+  forget_what_was_prepared(job);
+  store_.save(job, note);
+  say(job, note);
+  return job;
 }
 
 JobRecord Foreman::remove(std::int64_t id) {
@@ -172,11 +226,12 @@ JobRecord Foreman::print_again(const JobRecord& old) {
   return job;
 }
 
-JobRecord Foreman::prepare_again(const JobRecord& old) {
+JobRecord Foreman::prepare_again(const JobRecord& old, const std::string& wanted) {
   const JobRecord file = with_file(old);
   JobRecord job = like(old);
   job.origin = file.origin;
   job.by_copy = true;
+  if (!wanted.empty()) job.wanted = wanted;
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job, "the file of job " + std::to_string(old.id) + " again");

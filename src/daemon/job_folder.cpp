@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "daemon/child_json.h"
 #include "daemon/json_values.h"
+#include "job/advice.h"
 
 namespace packmerger {
 namespace {
@@ -17,7 +18,6 @@ using nlohmann::json;
 
 constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
 constexpr int kMaxTrays = 10000;
-constexpr double kSameCost = 0.005;  // less does not show in a price
 
 json read_report(const fs::path& folder) {
   const fs::path file = folder / "job.json";
@@ -47,39 +47,15 @@ const json* estimate_of(const json& estimates, const std::string& variant) {
   return &*found;
 }
 
-std::optional<double> cost_of(const json& estimates, const std::string& way) {
-  const json* estimate = estimate_of(estimates, way);
-  if (estimate == nullptr) return std::nullopt;
-  const auto cost = estimate->find("cost");
-  if (cost == estimate->end() || !cost->is_number()) return std::nullopt;
-  return cost->get<double>();
-}
-
-// What packing is weighed against.
-struct Weighed {
-  std::optional<double> packed;  // its cost; nothing: it does not fit
-  bool in_one_piece = false;     // nothing was there to be packed
-  std::string unpacked;          // the cheapest other way, in words; empty: none fits
-  double unpacked_cost = std::numeric_limits<double>::infinity();
-};
-
-Weighed weighed(const PreparedJob& job) {
-  const json ways = json::parse(job.estimates, nullptr, false);
-  Weighed result;
-  if (!ways.is_object()) return result;
-  result.packed = cost_of(ways, "packed");
-  result.in_one_piece = result.packed && estimate_of(ways, "packed")->value("parts", 0) == 1;
-  for (const auto& [way, words] :
-       {std::pair{"solid", "solid"}, {"hollow", "hollow"}, {"as_is", "as its file stands"}})
-    if (const auto cost = cost_of(ways, way); cost && *cost < result.unpacked_cost) {
-      result.unpacked = words;
-      result.unpacked_cost = *cost;
-    }
-  return result;
-}
-
-bool pays(const PreparedJob& job, const Weighed& ways) {
-  return job.variant == "packed" && ways.packed && ways.unpacked_cost > *ways.packed;
+// Of a model that was packed, though another way is better.
+std::string doubt_about_packing(const Estimate& packed, const Estimate& other,
+                                const std::string& name) {
+  const std::string doubt =
+      packed.parts == 1 ? "it is in one piece, with nothing to pack" : "packing does not pay";
+  const std::string printed = doubt + ": printed " + name;
+  if (other.cost > packed.cost) return printed + " it takes less time";
+  if (other.cost < packed.cost - kSameCost) return printed + " it costs less";
+  return packed.parts == 1 ? doubt : printed + " it costs as little";
 }
 
 }  // namespace
@@ -122,22 +98,21 @@ Profile read_prepared_profile(const fs::path& folder) {
   return read_profile(fs::absolute(folder / "profile.toml").string());
 }
 
-bool packing_pays(const PreparedJob& job) { return pays(job, weighed(job)); }
-
 std::string doubt_about(const PreparedJob& job) {
   if (job.variant == kProgramVariant || !job.warning.empty()) return job.warning;
-  const Weighed ways = weighed(job);
-  if (pays(job, ways)) return {};
-  if (job.variant != "packed")
-    return ways.packed && ways.unpacked_cost <= *ways.packed
-               ? "prepared " + job.variant + ": packing does not pay"
-               : "prepared " + job.variant + ", not packed";
-  const std::string doubt =
-      ways.in_one_piece ? "it is in one piece, with nothing to pack" : "packing does not pay";
-  if (!ways.packed || ways.unpacked.empty()) return doubt;
-  const std::string printed = doubt + ": printed " + ways.unpacked;
-  if (ways.unpacked_cost < *ways.packed - kSameCost) return printed + " it costs less";
-  return ways.in_one_piece ? doubt : printed + " it costs as little";
+  const std::optional<Comparison> ways = comparison_in(job.estimates);
+  const std::optional<Variant> own = variant_named(job.variant);
+  if (!ways || !own || !estimate_of(*ways, *own))
+    return "prepared " + job.variant + ": what it costs is not known";
+  const Estimate& prepared = *estimate_of(*ways, *own);
+  const Variant best = *cheapest(*ways);
+  if (best == *own) return {};
+  const Estimate& other = *estimate_of(*ways, best);
+  const std::string name(variant_name(best));
+  if (*own == Variant::kPacked) return doubt_about_packing(prepared, other, name);
+  return other.cost > prepared.cost - kSameCost
+             ? ""
+             : "prepared " + job.variant + ": printed " + name + " it costs less";
 }
 
 std::string tray_file(const Profile& profile, int tray) {

@@ -36,13 +36,9 @@ PreparedJob read_prepared(const fs::path& folder);
 // The profile the folder was prepared with.
 Profile read_prepared_profile(const fs::path& folder);
 
-// True when the job was packed and costs less so than every other way that fits the printer, or
-// when nothing else fits.
-bool packing_pays(const PreparedJob& job);
-
-// Why somebody should look at the job before it is printed: a model whose packing does not pay (and
-// what does), that was prepared another way, or whose unit may be wrong; a program with a warning.
-// Empty: nothing speaks against printing it.
+// Why somebody should look at the job before it is printed: a model that was not prepared in the
+// way that advice() names (and which that is), or whose unit may be wrong; a program with a
+// warning. Empty: nothing speaks against printing it.
 std::string doubt_about(const PreparedJob& job);
 
 // What the printer is given of a tray: "program.gcode", "program-2.x3g", or the profile's document,

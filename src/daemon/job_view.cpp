@@ -5,12 +5,15 @@
 #include <algorithm>
 
 #include "base/duration.h"
+#include "daemon/child_json.h"
 #include "daemon/job_file.h"
 #include "daemon/json_values.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/waits.h"
+#include "job/advice.h"
 #include "model/estimate.h"
+#include "tray/comparison_json.h"
 
 namespace packmerger {
 namespace {
@@ -148,6 +151,14 @@ json corrections_view(const Foreman& foreman, const PrinterConfig& printer) {
   return corrections;
 }
 
+// Which way of printing its model is best; null where they were not compared.
+json advice_view(const JobRecord& job) {
+  const std::optional<Comparison> ways = comparison_in(job.estimates);
+  if (!ways || is_program(job.name)) return nullptr;
+  const Advice told = advice(*ways);
+  return advice_json(told.variant ? variant_name(*told.variant) : "", told.text);
+}
+
 std::string_view kind_name(const JobRecord& job) {
   return is_program(job.name) ? "program" : "model";
 }
@@ -210,6 +221,7 @@ json job_view(const Foreman& foreman, const JobRecord& job) {
 
 json job_view_with_history(const Foreman& foreman, const JobRecord& job) {
   json view = job_view(foreman, job);
+  view["advice"] = advice_view(job);
   view["history"] = json::array();
   for (const JobEvent& event : foreman.store().history(job.id))
     view["history"].push_back(

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "daemon/move_file.h"
+#include "job/advice.h"
 
 namespace packmerger {
 namespace {
@@ -33,7 +34,7 @@ void read_size(TableReader& reader, const std::string& size, ModelOptions& optio
 void read_variant(TableReader& reader, ModelOptions& options) {
   reader.text("variant", "one of packed, hollow, solid, cheapest", [&](const std::string& text) {
     options.variant = text;
-    return text == "packed" || text == "hollow" || text == "solid" || text == "cheapest";
+    return variant_named(text).has_value();
   });
 }
 

@@ -120,6 +120,8 @@ HttpReply Web::routed(HttpRequest& request) {
       for (const char* key : {"limit", "before", "choice", "starts"})
         if (const auto given = request.query.find(key); given != request.query.end())
           verb[key] = number(given->second).value_or(-1);
+      if (const auto variant = request.query.find("variant"); variant != request.query.end())
+        verb["variant"] = variant->second;
       if (route.verb.starts_with("jobs.") && !route.id.empty())
         verb["id"] = number(route.id).value_or(0);
       if (route.verb.starts_with("printers.") && !route.id.empty()) verb["name"] = route.id;

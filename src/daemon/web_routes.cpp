@@ -29,6 +29,7 @@ constexpr std::array kRows = {
     Row{"POST", "jobs/{id}/hold", WebTarget::kVerb, Access::kChange, "jobs.hold"},
     Row{"POST", "jobs/{id}/cancel", WebTarget::kVerb, Access::kChange, "jobs.cancel"},
     Row{"POST", "jobs/{id}/again", WebTarget::kVerb, Access::kChange, "jobs.again"},
+    Row{"POST", "jobs/{id}/prepare", WebTarget::kVerb, Access::kChange, "jobs.prepare"},
     Row{"POST", "jobs/{id}/delete", WebTarget::kVerb, Access::kChange, "jobs.delete"},
     Row{"GET", "jobs/{id}/files/{file}", WebTarget::kJobFile, Access::kRead, ""},
     Row{"GET", "printers", WebTarget::kVerb, Access::kRead, "printers.list"},

@@ -2,14 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
+
+#include "job/advice.h"
 
 namespace packmerger {
 namespace {
 
-// Less than this share of the cost is not worth gluing for.
-constexpr double kLittleGain = 0.02;
+using Cells = std::vector<std::string>;
+
+// A way of printing, or several whose figures read the same.
+struct Way {
+  std::string name;
+  const Estimate* estimate = nullptr;  // nothing where it does not fit
+};
 
 const Estimate* cheapest_unpacked(const Comparison& comparison) {
   const Estimate* best = nullptr;
@@ -20,26 +29,88 @@ const Estimate* cheapest_unpacked(const Comparison& comparison) {
 }
 
 // "-31 %"; empty where there is nothing to compare with, a dash for the yardstick itself.
-std::string difference(double value, double yardstick, bool is_yardstick) {
-  if (is_yardstick) return "-";
-  if (yardstick == 0) return value == 0 ? "0 %" : "";
-  return fmt::format("{:+.0f} %", 100 * (value / yardstick - 1));
+std::string difference(const Estimate& way, const Estimate* yardstick, double Estimate::*figure) {
+  if (yardstick == nullptr) return "";
+  if (yardstick == &way) return "-";
+  if (yardstick->*figure == 0) return way.*figure == 0 ? "0 %" : "";
+  return fmt::format("{:+.0f} %", 100 * (way.*figure / yardstick->*figure - 1));
 }
 
-std::string row(const std::string& name, const std::optional<Estimate>& way,
-                const Estimate* yardstick) {
-  if (!way) return fmt::format("{:<20} does not fit\n", name);
-  const bool self = yardstick != nullptr && &*way == yardstick;
-  const auto against = [&](double value, double other) {
-    return yardstick == nullptr ? std::string() : difference(value, other, self);
+std::string grams(double g) { return fmt::format("{:.1f} g", g); }
+
+std::string by_hand(const Estimate& way) {
+  return way.assembly_min > 0 ? spoken_time(60 * way.assembly_min) : "none";
+}
+
+std::string money(const Estimate& way, double amount) {
+  return fmt::format("{:.2f} {}", amount, way.currency);
+}
+
+// What an earlier version compared tells no sums.
+std::string sum_of(const Estimate& way, double amount) {
+  const double all = way.material_cost + way.machine_cost + way.hands_cost;
+  return std::abs(all - way.cost) < kSameCost ? money(way, amount) : "-";
+}
+
+const Cells kFigureTitles = {"time", "", "model", "support", "", "parts", "trays", "by hand"};
+const Cells kMoneyTitles = {"cost", "", "material", "machine", "hands"};
+
+Cells figures_of(const Estimate& way, const Estimate* yardstick) {
+  return {spoken_time(way.time_s),
+          difference(way, yardstick, &Estimate::time_s),
+          grams(way.model_g),
+          grams(way.support_g),
+          difference(way, yardstick, &Estimate::support_g),
+          std::to_string(way.parts),
+          std::to_string(way.trays),
+          by_hand(way)};
+}
+
+Cells money_of(const Estimate& way, const Estimate* yardstick) {
+  return {money(way, way.cost), difference(way, yardstick, &Estimate::cost),
+          sum_of(way, way.material_cost), sum_of(way, way.machine_cost),
+          sum_of(way, way.hands_cost)};
+}
+
+bool read_the_same(const Estimate& a, const Estimate& b) {
+  return figures_of(a, nullptr) == figures_of(b, nullptr) &&
+         money_of(a, nullptr) == money_of(b, nullptr);
+}
+
+std::vector<Way> ways_of(const Comparison& comparison) {
+  std::vector<Way> ways;
+  const auto add = [&](const std::string& name, const std::optional<Estimate>& estimate) {
+    const auto same = std::find_if(ways.begin(), ways.end(), [&](const Way& way) {
+      return estimate && way.estimate != nullptr && read_the_same(*estimate, *way.estimate);
+    });
+    if (same == ways.end())
+      ways.push_back({name, estimate ? &*estimate : nullptr});
+    else
+      same->name += " = " + name;
   };
-  const Estimate none;
-  const Estimate& other = yardstick == nullptr ? none : *yardstick;
-  return fmt::format(
-      "{:<20} {:>12} {:>7} {:>9.1f} g {:>9.1f} g {:>7} {:>9.2f} {} {:>7} {:>5} {:>5}\n", name,
-      spoken_time(way->time_s), against(way->time_s, other.time_s), way->model_g, way->support_g,
-      against(way->support_g, other.support_g), way->cost, way->currency,
-      against(way->cost, other.cost), way->parts, way->trays);
+  add("as the file stands", comparison.as_is);
+  add("solid, best way up", comparison.solid);
+  add("hollow, one piece", comparison.hollow);
+  add("packed", comparison.packed);
+  return ways;
+}
+
+// Names to the left, cells to the right, columns as wide as they need to be; a row without cells
+// does not fit.
+std::string aligned(const Cells& names, const std::vector<Cells>& rows) {
+  std::size_t name_width = 0;
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const std::string& name : names) name_width = std::max(name_width, name.size());
+  for (const Cells& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (std::size_t line = 0; line < rows.size(); ++line) {
+    text += fmt::format("{:<{}}", names[line], name_width);
+    for (std::size_t i = 0; i < rows[line].size(); ++i)
+      if (widths[i] > 0) text += fmt::format("  {:>{}}", rows[line][i], widths[i]);
+    text += rows[line].empty() ? "  does not fit\n" : "\n";
+  }
+  return text;
 }
 
 std::string source_of(const Comparison& comparison) {
@@ -49,6 +120,11 @@ std::string source_of(const Comparison& comparison) {
   return any->source == EstimateSource::kSlicer
              ? "Figures come from slicing every way.\n"
              : "Figures come from the profile's model of the machine (docs/ESTIMATES.md).\n";
+}
+
+std::string option_for(const Advice& advice) {
+  if (!advice.variant || *advice.variant == Variant::kPacked) return "";
+  return " Use --variant " + std::string(variant_name(*advice.variant)) + ".";
 }
 
 }  // namespace
@@ -63,38 +139,21 @@ std::string spoken_time(double seconds) {
 
 std::string comparison_table(const Comparison& comparison, const std::string& title) {
   const Estimate* yardstick = cheapest_unpacked(comparison);
-  std::string text = title + "\n";
-  text += fmt::format("{:<20} {:>12} {:>7} {:>11} {:>11} {:>7} {:>13} {:>7} {:>5} {:>5}\n", "",
-                      "time", "", "model", "support", "", "cost", "", "parts", "trays");
-  text += row("as the file stands", comparison.as_is, yardstick);
-  text += row("solid, best way up", comparison.solid, yardstick);
-  text += row("hollow, one piece", comparison.hollow, yardstick);
-  text += row("packed", comparison.packed, yardstick);
-  return text + source_of(comparison) + recommendation(comparison) + "\n";
-}
-
-std::string recommendation(const Comparison& comparison) {
-  const Estimate* unpacked = cheapest_unpacked(comparison);
-  if (!comparison.packed)
-    return unpacked == nullptr ? "It fits this printer in no way; try another profile."
-                               : "It cannot be packed for this printer; print it in one piece.";
-  const Estimate& packed = *comparison.packed;
-  if (unpacked == nullptr) return "Pack it: in one piece it does not fit this printer.";
-  const bool hollow = comparison.hollow && unpacked == &*comparison.hollow;
-  const std::string other = hollow ? "hollow, in one piece" : "solid, in one piece";
-  if (packed.cost < unpacked->cost) {
-    const bool little = packed.cost > (1 - kLittleGain) * unpacked->cost;
-    return fmt::format("{}: {:.2f} {} less than printing it {} ({:+.0f} % time, {:+.0f} % cost).",
-                       little ? "Little is to be gained by packing" : "Pack it",
-                       unpacked->cost - packed.cost, packed.currency, other,
-                       100 * (packed.time_s / unpacked->time_s - 1),
-                       100 * (packed.cost / unpacked->cost - 1));
+  Cells names = {""};
+  std::vector<Cells> figures = {kFigureTitles};
+  Cells paid_names = {""};
+  std::vector<Cells> paid = {kMoneyTitles};
+  for (const Way& way : ways_of(comparison)) {
+    names.push_back(way.name);
+    figures.push_back(way.estimate != nullptr ? figures_of(*way.estimate, yardstick) : Cells());
+    if (way.estimate == nullptr) continue;
+    paid_names.push_back(way.name);
+    paid.push_back(money_of(*way.estimate, yardstick));
   }
-  const double more = packed.cost - unpacked->cost;
-  const std::string costs =
-      more < 0.005 ? "as little" : fmt::format("{:.2f} {} less", more, packed.currency);
-  return fmt::format("Packing does not pay here: printing it {} costs {}. Use --variant {}.", other,
-                     costs, hollow ? "hollow" : "solid");
+  std::string text = title + "\n" + aligned(names, figures);
+  if (paid.size() > 1) text += "\n" + aligned(paid_names, paid);
+  const Advice told = advice(comparison);
+  return text + source_of(comparison) + told.text + option_for(told) + "\n";
 }
 
 }  // namespace packmerger

@@ -1,4 +1,4 @@
-// The comparison as people read it: a table, the differences in per cent and a recommendation.
+// The comparison as people read it: what each way takes and costs, and which is best.
 #pragma once
 
 #include <string>
@@ -7,13 +7,10 @@
 
 namespace packmerger {
 
-// Plain text of fixed width, ending in a newline; title: the machine. Differences are against the
-// cheapest way that needs no dividing (as is, solid, hollow), since that is what one would print
-// otherwise.
+// Plain text, ending in a newline; title: the machine. Differences are against the cheapest way
+// that needs no dividing (as is, solid, hollow), since that is what one would print otherwise. Ways
+// whose figures read the same share a line.
 std::string comparison_table(const Comparison& comparison, const std::string& title);
-
-// Whether packing is worth it and what to do otherwise: one or two sentences.
-std::string recommendation(const Comparison& comparison);
 
 // "2 h 05 min", "41 min", "38 s".
 std::string spoken_time(double seconds);

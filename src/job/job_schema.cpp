@@ -87,10 +87,15 @@ CREATE TABLE memory (name TEXT PRIMARY KEY, value REAL NOT NULL) WITHOUT ROWID;
 PRAGMA user_version = 9;
 )";
 
+constexpr const char* kAddWanted = R"(
+ALTER TABLE job ADD COLUMN wanted TEXT NOT NULL DEFAULT '';
+PRAGMA user_version = 10;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 9> kSteps = {kMakeTables,   kAddTold,     kAddPrograms,
-                                               kAddSettings,  kAddTimes,    kAddChoice,
-                                               kAddTrayFiles, kAddApproval, kAddDeleting};
+constexpr std::array<const char*, 10> kSteps = {
+    kMakeTables, kAddTold,      kAddPrograms, kAddSettings, kAddTimes,
+    kAddChoice,  kAddTrayFiles, kAddApproval, kAddDeleting, kAddWanted};
 
 }  // namespace
 

@@ -32,9 +32,9 @@ bool may_follow(JobState from, JobState to) {
     case JobState::kPreparing:
       return to == JobState::kReady;
     case JobState::kReady:
-      return to == JobState::kApproved;
+      return to == JobState::kApproved || to == JobState::kReceived;
     case JobState::kApproved:
-      return to == JobState::kSending;
+      return to == JobState::kSending || to == JobState::kReceived;
     case JobState::kSending:
       return to == JobState::kApproved || to == JobState::kDone || to == JobState::kHandedOver;
     default:

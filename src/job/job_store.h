@@ -45,6 +45,7 @@ struct JobRecord {
   std::int64_t seed = 0;   // of its random choices; a program has none
   std::string tray_files;  // what the printer is given of each tray, and the SHA-256 of its bytes
                            // when it was prepared, JSON text; empty: not known
+  std::string wanted;      // the variant that somebody asked for; empty: as the settings say
   std::string variant;     // what was prepared: packed, hollow, solid, or program: as it came
   bool pays = false;       // nothing speaks against printing what was prepared
   std::string doubt;       // what speaks against it; one sentence

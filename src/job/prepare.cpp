@@ -1,7 +1,6 @@
 #include "job/prepare.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -14,17 +13,6 @@
 
 namespace packmerger {
 namespace {
-
-std::string name_of(Variant variant) {
-  switch (variant) {
-    case Variant::kSolid:
-      return "solid";
-    case Variant::kHollow:
-      return "hollow";
-    default:
-      return "packed";
-  }
-}
 
 Arrangement take(Plan& plan, Variant variant) {
   std::optional<Arrangement>& way = variant == Variant::kSolid    ? plan.solid
@@ -61,7 +49,7 @@ void record(Job& job, Arrangement arrangement, const std::vector<Tray>& trays) {
   }
   // What is packed was cut from the shell, whose volume checks the cuts; anything else is printed
   // uncut, and is no shell where the variant is solid.
-  if (job.variant != name_of(Variant::kPacked)) {
+  if (job.variant != variant_name(Variant::kPacked)) {
     job.shell_volume_mm3 = 0;
     for (const JobPart& part : arrangement.parts) job.shell_volume_mm3 += part.volume_mm3;
   }
@@ -80,7 +68,7 @@ void forget_what_does_not_apply(Job& job) {
   const bool is_any_cut = std::any_of(job.parts.begin(), job.parts.end(), [&](const JobPart& part) {
     return !whole.contains(part.model);
   });
-  const bool is_solid = job.variant == name_of(Variant::kSolid);
+  const bool is_solid = job.variant == variant_name(Variant::kSolid);
   std::erase_if(job.warnings, [&](const Warning& warning) {
     return (warning.code == "sealed_cavity" && (is_solid || whole.empty())) ||
            (warning.code == "thin_features" && !is_any_cut);
@@ -118,26 +106,16 @@ Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
   timed(planned.job.timings_s, "prove", [&] { prove(arrangement, profile, progress); });
 
   Job job = std::move(planned.job);
-  job.variant = name_of(chosen);
+  job.variant = variant_name(chosen);
+  const Advice advised = advice(job.estimates);
+  if (advised.variant) job.advised = variant_name(*advised.variant);
+  job.advice = advised.text;
   record(job, std::move(arrangement), trays);
   forget_what_does_not_apply(job);
   const std::vector<TrayFiles> files =
       timed(job.timings_s, "program", [&] { return programs(job, trays, progress); });
   write_job_folder(job, files, out, progress);
   return job;
-}
-
-std::optional<Variant> cheapest(const Comparison& comparison) {
-  std::optional<Variant> best;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const auto& [variant, estimate] : {std::pair{Variant::kSolid, comparison.solid},
-                                          std::pair{Variant::kHollow, comparison.hollow},
-                                          std::pair{Variant::kPacked, comparison.packed}})
-    if (estimate && estimate->cost < lowest) {
-      lowest = estimate->cost;
-      best = variant;
-    }
-  return best;
 }
 
 }  // namespace packmerger

@@ -25,11 +25,14 @@ struct Estimate {
   double model_g = 0;
   double support_mm3 = 0;  // V_s of docs/ESTIMATES, or what the slicer extrudes for support
   double support_g = 0;
-  double cost = 0;       // money: material, machine hours, minutes of gluing
+  double cost = 0;       // money: the sum of the three that follow
   std::string currency;  // ISO 4217
+  double material_cost = 0;
+  double machine_cost = 0;  // its hours
+  double hands_cost = 0;    // the minutes by hand
   int parts = 1;
   int trays = 1;
-  double assembly_min = 0;
+  double assembly_min = 0;  // by hand: gluing the parts, cleaning the trays
   EstimateSource source = EstimateSource::kModel;
 };
 

@@ -42,6 +42,8 @@ struct Job {
   Profile profile;           // as used, --set included
   std::uint64_t seed = 1;
   std::string variant = "packed";  // packed, hollow or solid: what is prepared to be printed
+  std::string advised;             // which of these is best; empty: it fits in no way
+  std::string advice;              // the same for people, a sentence
 
   double shell_volume_mm3 = 0;
   int tetrahedra = 0;

@@ -12,45 +12,6 @@ using Json = nlohmann::json;
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json estimate_json(const std::optional<Estimate>& estimate) {
-  if (!estimate) {
-    Json none = {{"fits", false}};
-    for (const char* key : {"time_s", "model_mm3", "model_g", "support_mm3", "support_g", "cost",
-                            "currency", "parts", "trays", "assembly_min", "source"})
-      none[key] = nullptr;
-    return none;
-  }
-  return {{"fits", true},
-          {"time_s", estimate->time_s},
-          {"model_mm3", estimate->model_mm3},
-          {"model_g", estimate->model_g},
-          {"support_mm3", estimate->support_mm3},
-          {"support_g", estimate->support_g},
-          {"cost", estimate->cost},
-          {"currency", estimate->currency},
-          {"parts", estimate->parts},
-          {"trays", estimate->trays},
-          {"assembly_min", estimate->assembly_min},
-          {"source", source_name(estimate->source)}};
-}
-
-std::optional<Estimate> estimate_of(const Json& json) {
-  if (!json.at("fits").get<bool>()) return std::nullopt;
-  Estimate estimate;
-  estimate.time_s = json.at("time_s");
-  estimate.model_mm3 = json.at("model_mm3");
-  estimate.model_g = json.at("model_g");
-  estimate.support_mm3 = json.at("support_mm3");
-  estimate.support_g = json.at("support_g");
-  estimate.cost = json.at("cost");
-  estimate.currency = json.at("currency");
-  estimate.parts = json.at("parts");
-  estimate.trays = json.at("trays");
-  estimate.assembly_min = json.at("assembly_min");
-  estimate.source = source_named(json.at("source").get<std::string>());
-  return estimate;
-}
-
 struct SettingJson {
   Json operator()(const NumberKey& key) const { return *key.value; }
   Json operator()(const IntegerKey& key) const { return *key.value; }
@@ -130,18 +91,6 @@ Json printer_json(const Profile& profile) {
           {"support_angle_deg", profile.support_angle_deg}};
 }
 
-Json comparison_json(const Comparison& comparison) {
-  return {{"as_is", estimate_json(comparison.as_is)},
-          {"solid", estimate_json(comparison.solid)},
-          {"hollow", estimate_json(comparison.hollow)},
-          {"packed", estimate_json(comparison.packed)}};
-}
-
-Comparison comparison_of(const Json& json) {
-  return {estimate_of(json.at("as_is")), estimate_of(json.at("solid")),
-          estimate_of(json.at("hollow")), estimate_of(json.at("packed"))};
-}
-
 Json job_json(const Job& job) {
   Json report = {
       {"version", 1},
@@ -161,6 +110,7 @@ Json job_json(const Job& job) {
       {"parts", Json::array()},
       {"removal_order", job.removal_order},
       {"estimates", comparison_json(job.estimates)},
+      {"advice", advice_json(job.advised, job.advice)},
       {"timings_s", Json::object()},
       {"warnings", Json::array()}};
   for (const JobPart& part : job.parts) report["parts"].push_back(part_json(part));

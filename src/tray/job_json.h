@@ -1,4 +1,4 @@
-// job.json and the comparison, as docs/JOB_FOLDER describes them: mm, mm³, g, s.
+// job.json, as docs/JOB_FOLDER describes it: mm, mm³, g, s.
 #pragma once
 
 #include <string>
@@ -6,15 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "model/job.h"
+#include "tray/comparison_json.h"
 
 namespace packmerger {
-
-// {"as_is": E, "solid": E, "hollow": E, "packed": E}; where it does not fit, E is
-// {"fits": false} with every other figure null.
-nlohmann::json comparison_json(const Comparison& comparison);
-
-// The inverse of comparison_json(). Throws nlohmann::json::exception where a key is missing.
-Comparison comparison_of(const nlohmann::json& json);
 
 // {"name", "technology", "dialect", "build_mm", "support_angle_deg"}.
 nlohmann::json printer_json(const Profile& profile);

@@ -13,7 +13,8 @@ Json estimates_json(const ReadyProgram& program) {
   ways.as_is = program.estimate;
   Json estimates = comparison_json(ways);
   if (!program.material_known)
-    for (const char* key : {"model_mm3", "model_g", "support_mm3", "support_g", "cost"})
+    for (const char* key : {"model_mm3", "model_g", "support_mm3", "support_g", "cost",
+                            "material_cost", "machine_cost", "hands_cost"})
       estimates["as_is"][key] = nullptr;
   return estimates;
 }

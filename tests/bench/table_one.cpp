@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/models.h"
-#include "job/comparison_table.h"
+#include "job/advice.h"
 #include "picture/preview.h"
 
 namespace packmerger::bench {
@@ -106,7 +106,7 @@ Json row_json(const TableRow& row, const Job& job) {
           {"height_mm", job.height_mm},
           {"trays", e.packed->trays},
           {"shell_volume_mm3", job.shell_volume_mm3},
-          {"recommendation", recommendation(e)}};
+          {"recommendation", advice(e).text}};
 }
 
 std::string table_markdown(const Json& rows) {

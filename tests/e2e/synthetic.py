@@ -142,7 +142,7 @@ def support_mm3():
 
 def _estimate(**changes):
     estimate = {"fits": True, "time_s": 3600.0, "model_mm3": 9000.0, "model_g": 10.0, "support_mm3": 100.0,
-                "support_g": 0.1, "cost": 5.0, "currency": "EUR", "parts": 1, "trays": 1, "assembly_min": 0.0,
+                "support_g": 0.1, "cost": 5.0, "material_cost": 1.0, "machine_cost": 1.5, "hands_cost": 2.5, "currency": "EUR", "parts": 1, "trays": 1, "assembly_min": 0.0,
                 "source": "model"}
     return estimate | changes
 

@@ -215,7 +215,9 @@ class Jobs(CommandLine):
         told = json.loads(result.out)
         self.assertEqual(sorted(told), ["objet30", "uprint"])
         for profile, four in told.items():
-            self.assertEqual(set(estimates.WAYS) - set(four), set())
+            self.assertEqual(set(four), {*estimates.WAYS, "advice"})
+            self.assertRegex(four["advice"]["text"], "[Pp]ack")
+            self.assertIn(four["advice"]["variant"], ("packed", "hollow", "solid", None))
             self.assertEqual([line for way in estimates.WAYS for line in estimates.faults(four[way], profile)], [])
 
 

@@ -36,7 +36,7 @@ void refused_or_read(Fault expected, const Read& read) {
 
 void job_report(std::string_view text) {
   put(folder() / "job.json", text);
-  refused_or_read(Fault::kBadInput, [] { packing_pays(read_prepared(folder())); });
+  refused_or_read(Fault::kBadInput, [] { doubt_about(read_prepared(folder())); });
 }
 
 void job_profile(std::string_view text) {

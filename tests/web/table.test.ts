@@ -1,15 +1,14 @@
 import { expect, test } from 'vitest';
-import { cheaperWay } from '../../src/web/job/table';
+import { columnsOf } from '../../src/web/job/table';
 import type { Estimates } from '../../src/web/daemon/types';
 
 const costs = (way: Record<string, number | null>): Estimates =>
-  Object.fromEntries(Object.entries(way).map(([name, cost]) => [name, { fits: cost !== null, cost }])) as unknown as Estimates;
+  Object.fromEntries(Object.entries(way).map(([name, cost]) => [name, { ...FIGURES, fits: cost !== null, cost }])) as unknown as Estimates;
+const FIGURES = { time_s: 60, model_g: 1, support_g: 1, currency: 'EUR', parts: 1, trays: 1, assembly_min: 10 };
 
-test('a cheaper way is named only where there is one that fits', () => {
-  expect(cheaperWay(costs({ as_is: 9, solid: 8, hollow: 4, packed: 5 }), 'packed')).toBe('hollow');
-  expect(cheaperWay(costs({ as_is: 9, solid: 8, hollow: null, packed: 5 }), 'packed')).toBe('');
-  expect(cheaperWay(costs({ as_is: null, solid: null, hollow: null, packed: 5 }), 'packed')).toBe('');
-  expect(cheaperWay(costs({ solid: 5, packed: 5 }), 'packed')).toBe('');
-  expect(cheaperWay(costs({ solid: 5 }), ''), 'a program that somebody else made').toBe('');
-  expect(cheaperWay(null, 'packed')).toBe('');
+test('ways that are equal are one column', () => {
+  const titles = (way: Record<string, number | null>) => columnsOf(costs(way)).map((column) => column.title);
+  expect(titles({ as_is: 5, solid: 5, hollow: 4, packed: 4 })).toEqual(['As it stands, solid', 'Hollow, packed']);
+  expect(titles({ hollow: 4, packed: 4.001 })).toEqual(['Hollow, packed']);
+  expect(titles({ as_is: null, solid: null, hollow: 4, packed: 5 })).toEqual(['As it stands', 'Solid', 'Hollow', 'Packed']);
 });

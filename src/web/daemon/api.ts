@@ -1,7 +1,7 @@
 // Requests to the daemon, and what went wrong with one in words.
 import { readKey } from './key';
 import { parsed } from './shown';
-import type { Job, Report, Start, UploadRules } from './types';
+import type { Job, Report, Start, UploadRules, Variant } from './types';
 
 const BASE = '/api/v1/';
 
@@ -61,6 +61,9 @@ export type JobVerb = 'approve' | 'hold' | 'cancel' | 'again' | 'delete';
 // starts: the job that this may start at once, 0 for none; refused where it would start another.
 export const changeJob = (id: number, verb: JobVerb, starts: number): Promise<Job> =>
   json(`jobs/${id}/${verb}?starts=${starts}`, { method: 'POST' });
+
+export const prepareJob = (id: number, variant: Variant): Promise<Job> =>
+  json(`jobs/${id}/prepare?variant=${variant}`, { method: 'POST' });
 
 export type PrinterVerb = 'clear' | 'pause' | 'resume' | 'stop';
 export const changePrinter = (name: string, verb: PrinterVerb, starts: number): Promise<unknown> =>

@@ -31,6 +31,9 @@ export interface Estimate {
   model_g: number | null;
   support_g: number | null;
   cost: number | null;
+  material_cost?: number | null;  // the three sums of the cost; earlier versions do not tell them
+  machine_cost?: number | null;
+  hands_cost?: number | null;
   currency: string | null;
   parts: number | null;
   trays: number | null;
@@ -39,6 +42,7 @@ export interface Estimate {
 }
 
 export type Way = 'as_is' | 'solid' | 'hollow' | 'packed';
+export type Variant = Exclude<Way, 'as_is'>;
 export type Estimates = Partial<Record<Way, Estimate>>;
 
 // How the printers were compared for a model that named none.
@@ -73,8 +77,9 @@ export interface Job {
   progress: (Partial<Print> & { stage: string; fraction: number }) | null;
   trays: number;
   tray: number;
-  variant: Exclude<Way, 'as_is'> | 'program' | '';  // what was prepared; '' before, and in old jobs
+  variant: Variant | 'program' | '';  // what was prepared; '' before, and in old jobs
   pays: boolean;
+  advice?: { variant: Variant | null; text: string } | null;  // which way is best; only where one job is asked for
   doubt: string | null;  // what speaks against printing what was prepared
   approved: boolean;
   estimates: Estimates | null;

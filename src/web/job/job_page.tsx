@@ -3,19 +3,20 @@ import { useEffect, useState } from 'preact/hooks';
 import { JobButtons } from './actions';
 import { ChoiceTable } from './choice';
 import { Files } from './files';
-import { cheaperWay, EstimateTable } from './table';
+import { EstimateTable } from './table';
 import { Timeline } from './timeline';
 import { Views } from './views';
-import { jobReport, Refusal, showJob } from '../daemon/api';
-import { isPacked, type Estimates, type Job, type Report } from '../daemon/types';
+import { jobReport, prepareJob, Refusal, showJob } from '../daemon/api';
+import { hasEnded, isPacked, type Estimates, type Job, type Report, type Variant } from '../daemon/types';
 import { jobHref } from '../route';
 import type { Known } from '../store';
+import { act } from '../ui/act';
 import { Badge, Bar, Empty } from '../ui/bits';
 import { Icon } from '../ui/icons';
 import { complain } from '../ui/notes';
 import { duration, jobBadge, nextStep, progressText, sentence, when } from '../words';
 
-// The job as the stream tells it, with the history that only a question brings.
+// The job as the stream tells it, with the history and the advice that only a question brings.
 function useJob(id: number, known: Known): Job | Refusal | null {
   const live = known.jobs?.find((job) => job.id === id);
   const [asked, setAsked] = useState<Job | Refusal | null>(null);
@@ -23,8 +24,9 @@ function useJob(id: number, known: Known): Job | Refusal | null {
     showJob(id).then(setAsked, (error: unknown) => (error instanceof Refusal ? setAsked(error) : complain(error)));
   }, [id, live?.state, live?.held, live?.tray, live?.reason]);
   if (live === undefined) return asked;
-  const history = asked === null || asked instanceof Refusal ? undefined : asked.history;
-  return history === undefined ? live : { ...live, history };
+  if (asked === null || asked instanceof Refusal) return live;
+  const { history, advice } = asked;
+  return { ...live, ...(history ? { history } : {}), ...(advice ? { advice } : {}) };
 }
 
 // null: none yet; a job that holds only a program has none at all.
@@ -54,7 +56,8 @@ export function JobPage({ id, known }: { id: number; known: Known }) {
       {job.estimates ? (
         <section class="card" aria-labelledby="table-title">
           <h2 id="table-title">What it takes</h2>
-          <EstimateTable estimates={job.kind === 'program' ? own(job.estimates) : job.estimates} prepared={report?.variant ?? ''} />
+          <EstimateTable estimates={job.kind === 'program' ? own(job.estimates) : job.estimates} prepared={job.variant}
+                         advice={job.advice?.text ?? ''} take={canBeTaken(job) ? (variant) => takeWay(job, variant) : undefined} />
         </section>
       ) : null}
       {job.choice ? <ChoiceTable choice={job.choice} /> : null}
@@ -64,14 +67,19 @@ export function JobPage({ id, known }: { id: number; known: Known }) {
   );
 }
 
+const canBeTaken = (job: Job): boolean =>
+  job.kind === 'model' && (job.state === 'ready' || (job.state === 'approved' && job.tray === 1) || hasEnded(job));
+
+function takeWay(job: Job, variant: Variant): void {
+  act(() => prepareJob(job.id, variant), (anew) => `${anew.name} is prepared ${variant}, as job ${anew.id}`);
+}
+
 // Of a program there is only what it says of itself.
 const own = ({ as_is }: Estimates): Estimates => (as_is ? { as_is } : {});
 
 function Head({ job, report }: { job: Job; report: Report | null }) {
   const size = report?.inputs[0]?.size_mm?.map((mm) => Math.round(mm)).join(' × ');
   const next = nextStep(job);
-  // of a packed job the reason tells it
-  const cheaper = job.state === 'ready' && job.variant !== 'packed' ? cheaperWay(job.estimates, job.variant) : '';
   return (
     <section class={`card job-head ${jobBadge(job).tone}`} aria-labelledby="job-title">
       <div class="card-head">
@@ -88,7 +96,6 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
       {job.progress ? <Progress job={job} /> : null}
       {job.reason ? <p class="reason"><strong>{sentence(job.reason)}</strong> {job.hint}</p> : null}
       {next ? <p>{next}</p> : null}
-      {cheaper ? <p>It would cost less printed {cheaper}; the table below shows by how much.</p> : null}
       {job.deleted_s ? <p class="quiet-text">Its files were deleted {when(job.deleted_s)}{job.filed ? <>; the model lies at <code>{job.filed}</code></> : null}.</p> : null}
       {job.state === 'handed_over' ? <p>Open it in the printer’s own software.</p> : null}
       {job.printed_s ? <p class="quiet-text">It took {duration(job.printed_s)} to print{job.predicted_s ? `, ${duration(job.predicted_s)} were predicted` : ''}.</p> : null}

@@ -1,5 +1,6 @@
 // What the ways of printing take, each against the cheapest that is not packed, as `packmerger compare` has it.
-import type { Estimate, Estimates, Way } from '../daemon/types';
+import type { Estimate, Estimates, Variant, Way } from '../daemon/types';
+import { Button } from '../ui/bits';
 import { difference, duration, grams, money } from '../words';
 
 const WAYS: readonly { way: Way; title: string }[] = [
@@ -17,11 +18,16 @@ interface Row {
   compared: boolean;
 }
 
+const paid = (value: number, one: Estimate): string => money(value, one.currency);
+
 const ROWS: readonly Row[] = [
   { title: 'Printing time', value: (one) => one.time_s, text: duration, compared: true },
   { title: 'Model', value: (one) => one.model_g, text: grams, compared: true },
   { title: 'Support', value: (one) => one.support_g, text: grams, compared: true },
-  { title: 'Cost', value: (one) => one.cost, text: (value, one) => money(value, one.currency), compared: true },
+  { title: 'Cost', value: (one) => one.cost, text: paid, compared: true },
+  { title: '– material', value: (one) => one.material_cost ?? null, text: paid, compared: false },
+  { title: '– machine', value: (one) => one.machine_cost ?? null, text: paid, compared: false },
+  { title: '– hands', value: (one) => one.hands_cost ?? null, text: paid, compared: false },
   { title: 'Parts', value: (one) => one.parts, text: String, compared: false },
   { title: 'Trays', value: (one) => one.trays, text: String, compared: false },
   { title: 'Work by hand', value: (one) => one.assembly_min, text: (value) => (value === 0 ? 'none' : duration(60 * value)), compared: false },
@@ -41,52 +47,103 @@ function Cell({ row, one, base, best, kind }:
   );
 }
 
-// The way that costs less than the prepared one and fits too; '' where there is none.
-export function cheaperWay(estimates: Estimates | null, prepared: string): string {
-  const cost = (way: Way): number => (estimates?.[way]?.fits ? estimates[way].cost ?? Infinity : Infinity);
-  const own = WAYS.find(({ way }) => way === prepared);
-  const best = WAYS.reduce((least, one) => (cost(one.way) < cost(least.way) ? one : least));
-  return own && cost(best.way) < cost(own.way) ? best.title.toLowerCase() : '';
+export interface Column {
+  ways: Way[];
+  title: string;
+  one: Estimate;
 }
 
-export function EstimateTable({ estimates, prepared }: { estimates: Estimates; prepared: string }) {
-  const ways = WAYS.filter(({ way }) => estimates[way] !== undefined);
+const shown = (row: Row, one: Estimate): string => {
+  const value = row.value(one);
+  return value === null ? '' : row.text(value, one);
+};
+
+// Ways whose figures all read the same are one column.
+export function columnsOf(estimates: Estimates): Column[] {
+  const columns: Column[] = [];
+  for (const { way, title } of WAYS) {
+    const one = estimates[way];
+    if (one === undefined) continue;
+    const same = columns.find((column) => column.one.fits && one.fits && ROWS.every((row) => shown(row, column.one) === shown(row, one)));
+    if (same === undefined) columns.push({ ways: [way], title, one });
+    else {
+      same.ways.push(way);
+      same.title += `, ${title.toLowerCase()}`;
+    }
+  }
+  return columns;
+}
+
+// What of a column can be prepared: the way with the least work by hand.
+const variantOf = ({ ways }: Column): Variant | undefined =>
+  (['solid', 'hollow', 'packed'] as const).find((way) => ways.includes(way));
+
+interface Props {
+  estimates: Estimates;
+  prepared: string;
+  advice?: string;
+  take?: ((variant: Variant) => void) | undefined;  // has another way prepared; left out where that cannot be
+}
+
+export function EstimateTable({ estimates, prepared, advice, take }: Props) {
+  const columns = columnsOf(estimates);
+  const isPrepared = ({ ways }: Column): boolean => ways.some((way) => way === prepared);
+  const offered = (column: Column): Variant | undefined => (column.one.fits && !isPrepared(column) ? variantOf(column) : undefined);
   const fitting = (way: Way): Estimate | undefined => (estimates[way]?.fits ? estimates[way] : undefined);
   const base = (['as_is', 'solid', 'hollow'] as const).map(fitting)
     .reduce((best, one) => (one && (!best || (one.cost ?? 0) < (best.cost ?? 0)) ? one : best), undefined);
-  const baseTitle = WAYS.find(({ way }) => estimates[way] === base)?.title ?? '';
+  const baseColumn = columns.find(({ ways }) => ways.some((way) => estimates[way] === base));
+  const rows = ROWS.filter((row) => columns.some(({ one }) => one.fits && row.value(one) !== null));
   const source = Object.values(estimates).find((one) => one.source !== null)?.source ?? 'model';
   return (
-    <table class="estimates">
-      <caption class="quiet-text">
-        {SOURCES[source]}{baseTitle && ways.length > 1 ? `; differences are against “${baseTitle}”, the cheapest way that is not packed` : ''}.
-      </caption>
-      <thead>
-        <tr>
-          <th scope="col"><span class="unseen">Figure</span></th>
-          {ways.map(({ way, title }) => (
-            <th key={way} scope="col" class={way === prepared ? 'prepared' : ''}>
-              {title}
-              {way === prepared ? <span class="tag">prepared</span> : null}
-              {estimates[way]?.fits === false ? <span class="tag bad">does not fit</span> : null}
-            </th>
-          ))}
-        </tr>
-      </thead>
-      <tbody>
-        {ROWS.map((row) => {
-          const values = ways.map(({ way }) => fitting(way)).flatMap((one) => (one ? [row.value(one) ?? Infinity] : []));
-          return (
-            <tr key={row.title}>
-              <th scope="row">{row.title}</th>
-              {ways.map(({ way }) => (
-                <Cell key={way} row={row} one={estimates[way]} base={base} best={values.length > 1 ? Math.min(...values) : NaN}
-                      kind={way === prepared ? 'prepared' : ''} />
-              ))}
+    <>
+      {advice ? <p class="advice">{advice}</p> : null}
+      <table class="estimates">
+        <caption class="quiet-text">
+          {SOURCES[source]}{baseColumn && columns.length > 1 ? `; differences are against “${baseColumn.title}”, the cheapest way that is not packed` : ''}.
+        </caption>
+        <thead>
+          <tr>
+            <th scope="col"><span class="unseen">Figure</span></th>
+            {columns.map((column) => (
+              <th key={column.title} scope="col" class={isPrepared(column) ? 'prepared' : ''}>
+                {column.title}
+                {isPrepared(column) ? <span class="tag">prepared</span> : null}
+                {column.one.fits ? null : <span class="tag bad">does not fit</span>}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {rows.map((row) => {
+            const values = columns.flatMap(({ one }) => (one.fits ? [row.value(one) ?? Infinity] : []));
+            return (
+              <tr key={row.title}>
+                <th scope="row">{row.title}</th>
+                {columns.map((column) => (
+                  <Cell key={column.title} row={row} one={column.one} base={baseColumn?.one} best={values.length > 1 ? Math.min(...values) : NaN}
+                        kind={isPrepared(column) ? 'prepared' : ''} />
+                ))}
+              </tr>
+            );
+          })}
+        </tbody>
+        {take && columns.some(offered) ? (
+          <tfoot>
+            <tr>
+              <th scope="row"><span class="unseen">Another way</span></th>
+              {columns.map((column) => {
+                const variant = offered(column);
+                return (
+                  <td key={column.title} class={isPrepared(column) ? 'prepared' : ''}>
+                    {variant ? <Button label={`Prepare it ${variant}`} onClick={() => take(variant)}>Prepare</Button> : null}
+                  </td>
+                );
+              })}
             </tr>
-          );
-        })}
-      </tbody>
-    </table>
+          </tfoot>
+        ) : null}
+      </table>
+    </>
   );
 }

@@ -5,7 +5,7 @@ from .contract import BOOLEAN, INTEGER, NUMBER, TEXT, mismatches
 from .report import first_few
 
 FIGURES = {"time_s": NUMBER, "model_mm3": NUMBER, "model_g": NUMBER, "support_mm3": NUMBER, "support_g": NUMBER,
-           "cost": NUMBER, "parts": INTEGER, "trays": INTEGER, "assembly_min": NUMBER}
+           "cost": NUMBER, "material_cost": NUMBER, "machine_cost": NUMBER, "hands_cost": NUMBER, "parts": INTEGER, "trays": INTEGER, "assembly_min": NUMBER}
 WAYS = ("as_is", "solid", "hollow", "packed")
 
 
@@ -22,6 +22,9 @@ def faults(estimate, name):
     found += [f"{name}.{key}: negative" for key in FIGURES if estimate[key] < 0]
     found += [f"{name}.{key}: positive expected" for key in ("time_s", "model_mm3", "model_g", "parts", "trays")
               if estimate[key] <= 0]
+    sums = sum(estimate[key] for key in ("material_cost", "machine_cost", "hands_cost"))
+    if abs(sums - estimate["cost"]) > 1e-6 * max(1, sums):
+        found.append(f"{name}.cost: {estimate['cost']} is not material, machine and hands, {sums}")
     if not re.fullmatch(r"[A-Z]{3}", estimate["currency"]):
         found.append(f"{name}.currency: three capitals expected, {estimate['currency']}")
     if estimate["source"] not in ("model", "slicer"):

@@ -30,7 +30,6 @@ TEST(ChildJson, AReportWithAnyOneValueReplacedIsReadOrRefused) {
   const auto read = [&](const json& report) {
     std::ofstream(folder.path() / "job.json") << report.dump();
     const PreparedJob job = read_prepared(folder.path());
-    packing_pays(job);
     doubt_about(job);
   };
   EXPECT_NO_THROW(read(good));
@@ -65,18 +64,13 @@ TEST(ChildJson, WhatIsNestedTooDeeplyIsRefused) {
 // As if the check had overlooked something.
 TEST(ChildJson, WhateverIsThrownFailsTheJobAndNotTheDaemon) {
   Workshop shop;
-  PrinterConfig any = printer(shop.folder_.path(), "any", Dialect::kGcode);
-  any.profile = kAutoProfile;
-  any.prefer = Prefer::kCheapest;
-  shop.config_.printers.push_back(any);
-  shop.drop("any", "a.stl");
-  EXPECT_TRUE(shop.prepare_order());
-  const std::string wrong = R"({"packed":{"fits":true,"time_s":1,"cost":1,"parts":"two"}})";
-  shop.tell(Compared{1, {{"sim", "packed", wrong, ""}}});
+  shop.crew_->senders.erase("sim");  // whoever asks for it is thrown std::out_of_range
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order());
   EXPECT_EQ(shop.job(1).state, JobState::kFailed);
   EXPECT_THAT(shop.job(1).reason, testing::StartsWith("It could not be gone on with"));
   EXPECT_FALSE(shop.job(1).hint.empty());
-  shop.drop("sim", "b.stl");
+  shop.drop("real", "b.stl");
   EXPECT_TRUE(shop.prepare_order()) << "the worker is free again";
 }
 

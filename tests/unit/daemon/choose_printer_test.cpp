@@ -131,8 +131,8 @@ TEST(AutoPrinter, ComparesAllAndProposesTheCheapest) {
   shop.tell(Hashed{1, "abc"});
   Compared compared{1, {}};
   compared.printers = {{"hand", "packed", "{}", "it is too large"},
-                       {"real", "packed", R"({"packed":{"time_s":50,"cost":2}})", ""},
-                       {"sim", "solid", R"({"solid":{"time_s":60,"cost":1}})", ""}};
+                       {"real", "packed", R"({"packed":{"fits":true,"time_s":50,"cost":2}})", ""},
+                       {"sim", "solid", R"({"solid":{"fits":true,"time_s":60,"cost":1}})", ""}};
   shop.tell(compared);
   EXPECT_EQ(shop.job(1).printer, "sim");
   EXPECT_EQ(shop.job(1).chosen_by, "any");

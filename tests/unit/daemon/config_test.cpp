@@ -183,6 +183,25 @@ ca_file = "ca.pem"
   EXPECT_EQ(config.mqtt.ca_file, (folder_.path() / "ca.pem").string());
 }
 
+TEST_F(ConfigTest, ModelsOfThreadArePreparedTheCheapestWay) {
+  std::ofstream(folder_.path() / "v.toml") << R"(state = "s"
+[printer.fdm]
+profile = "marlin"
+port = "/dev/null"
+[printer.named]
+profile = "marlin"
+port = "/dev/zero"
+variant = "packed"
+[printer.jet]
+profile = "objet30"
+handoff_folder = "out"
+)";
+  const DaemonConfig config = read_config(folder_.path() / "v.toml");
+  EXPECT_EQ(config.printer("fdm")->options.variant, "cheapest");
+  EXPECT_EQ(config.printer("named")->options.variant, "packed");
+  EXPECT_EQ(config.printer("jet")->options.variant, std::nullopt) << "prepare's own default";
+}
+
 TEST_F(ConfigTest, PrintersMayComeLater) {
   std::ofstream(folder_.path() / "none-yet.toml") << "state = \"s\"\n";
   EXPECT_TRUE(read_config(folder_.path() / "none-yet.toml").printers.empty());

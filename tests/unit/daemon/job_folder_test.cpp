@@ -19,7 +19,7 @@ void write(const fs::path& path, const std::string& text) { std::ofstream(path) 
 const char* const kReport = R"({"version": 1, "variant": "packed",
   "inputs": [{"file": "bunny.stl", "sha256": "ab", "scale": 1}],
   "parts": [{"id": 1, "tray": 1}, {"id": 2, "tray": 2}],
-  "estimates": {"packed": {"fits": true, "cost": 1.5}}})";
+  "estimates": {"packed": {"fits": true, "time_s": 1, "cost": 1.5}}})";
 
 // A job folder of two trays for the given profile.
 void make_job(const fs::path& folder, const std::string& profile) {
@@ -39,7 +39,7 @@ TEST(JobFolder, ReadsTheReport) {
   EXPECT_EQ(job.title, "bunny");
   EXPECT_EQ(job.input_sha256, "ab");
   EXPECT_EQ(job.variant, "packed");
-  EXPECT_TRUE(packing_pays(job));
+  EXPECT_EQ(doubt_about(job), "");
 }
 
 TEST(JobFolder, OnlyWarningsOfSizeAndShapeAreDoubtsAboutAModel) {
@@ -86,25 +86,29 @@ TEST(JobFolder, RefusesWhatIsNoReport) {
   }
 }
 
-TEST(PackingPays, OnlyWhenEveryOtherWayThatFitsIsDearer) {
+TEST(Doubt, NoneWherePackingIsCheaperThanEveryOtherWayThatFits) {
   const auto pays = [](const std::string& estimates, const std::string& variant) {
     PreparedJob job;
     job.variant = variant;
     job.estimates = estimates;
-    return packing_pays(job);
+    return doubt_about(job).empty();
   };
   const std::string cheap =
-      R"({"packed": {"fits": true, "cost": 5}, "hollow": {"fits": true, "cost": 6},
-    "solid": {"fits": false, "cost": null}, "as_is": {"fits": false, "cost": null}})";
+      R"({"packed": {"fits": true, "time_s": 1, "cost": 5},
+          "hollow": {"fits": true, "time_s": 1, "cost": 6},
+          "solid": {"fits": false, "cost": null}, "as_is": {"fits": false, "cost": null}})";
   EXPECT_TRUE(pays(cheap, "packed"));
   EXPECT_FALSE(pays(cheap, "hollow"));
-  EXPECT_FALSE(pays(cheap, "solid")) << "it is not what was found to pay";
-  EXPECT_FALSE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": true, "cost": 5}})",
-                    "packed"));
-  EXPECT_FALSE(
-      pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": true, "cost": 4}})", "solid"))
-      << "asked for as the cheapest way, which is not packing";
-  EXPECT_TRUE(pays(R"({"packed": {"fits": true, "cost": 5}, "solid": {"fits": false}})", "packed"));
+  EXPECT_FALSE(pays(cheap, "solid")) << "it does not even fit";
+  const auto solid_at = [](const std::string& cost) {
+    return R"({"packed": {"fits": true, "time_s": 1, "cost": 5},
+               "solid": {"fits": true, "time_s": 1, "cost": )" +
+           cost + "}}";
+  };
+  EXPECT_FALSE(pays(solid_at("5"), "packed")) << "glued for nothing";
+  EXPECT_TRUE(pays(solid_at("4"), "solid")) << "the cheapest way";
+  EXPECT_TRUE(pays(
+      R"({"packed": {"fits": true, "time_s": 1, "cost": 5}, "solid": {"fits": false}})", "packed"));
   for (const char* text : {"", "[]", "{}", R"({"packed": null})", R"({"packed": {"fits": true}})"})
     EXPECT_FALSE(pays(text, "packed")) << text;
 }
@@ -115,8 +119,9 @@ TEST(Doubt, SaysWhatWasComparedAndChosen) {
     PreparedJob job;
     job.variant = variant;
     job.estimates = fmt::format(
-        R"({{"packed": {{"fits": true, "cost": {}, "parts": {}}}, "as_is": {{"fits": false}},
-           "solid": {{"fits": true, "cost": {}}}, "hollow": {{"fits": true, "cost": {}}}}})",
+        R"({{"packed": {{"fits": true, "time_s": 1, "cost": {}, "parts": {}}},
+            "as_is": {{"fits": false}}, "solid": {{"fits": true, "time_s": 1, "cost": {}}},
+            "hollow": {{"fits": true, "time_s": 1, "cost": {}}}}})",
         packed, parts, solid, hollow);
     return doubt_about(job);
   };
@@ -128,12 +133,22 @@ TEST(Doubt, SaysWhatWasComparedAndChosen) {
   EXPECT_EQ(doubt("packed", 7, 7, 8, 1), "it is in one piece, with nothing to pack");
   EXPECT_EQ(doubt("packed", 7, 8, 6, 1),
             "it is in one piece, with nothing to pack: printed hollow it costs less");
-  EXPECT_EQ(doubt("solid", 5, 7, 6, 4), "prepared solid, not packed") << "it would have paid";
-  EXPECT_EQ(doubt("hollow", 7, 8, 6, 4), "prepared hollow: packing does not pay");
+  EXPECT_EQ(doubt("solid", 5, 7, 6, 4), "prepared solid: printed packed it costs less");
+  EXPECT_EQ(doubt("solid", 8, 7, 6, 4), "prepared solid: printed hollow it costs less");
+  EXPECT_EQ(doubt("hollow", 7, 8, 6, 4), "") << "the cheapest way";
+  EXPECT_EQ(doubt("solid", 7, 7, 7, 4), "") << "none is cheaper";
   PreparedJob job;
   job.variant = "hollow";
-  job.estimates = R"({"packed": {"fits": false}, "hollow": {"fits": true, "cost": 5}})";
-  EXPECT_EQ(doubt_about(job), "prepared hollow, not packed") << "it could not be packed";
+  job.estimates =
+      R"({"packed": {"fits": false}, "hollow": {"fits": true, "time_s": 1, "cost": 5}})";
+  EXPECT_EQ(doubt_about(job), "") << "it could not be packed";
+  job.variant = "packed";
+  job.estimates = R"({"packed": {"fits": true, "time_s": 9, "cost": 4, "parts": 3, "material_cost": 4},
+                      "hollow": {"fits": true, "time_s": 5, "cost": 5, "material_cost": 5}})";
+  EXPECT_EQ(doubt_about(job), "packing does not pay: printed hollow it takes less time");
+  job.variant = "hollow";
+  job.estimates = "{}";
+  EXPECT_EQ(doubt_about(job), "prepared hollow: what it costs is not known");
   job.variant = kProgramVariant;
   job.warning = "a move leaves the build volume";
   EXPECT_EQ(doubt_about(job), job.warning);

@@ -90,6 +90,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.approved = true;
     job.doubt = "doubt";
     job.deleted_s = 4.5;
+    job.wanted = "hollow";
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -120,6 +121,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_TRUE(back.approved);
   EXPECT_EQ(back.doubt, "doubt");
   EXPECT_EQ(back.deleted_s, 4.5);
+  EXPECT_EQ(back.wanted, "hollow");
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");

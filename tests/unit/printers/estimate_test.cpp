@@ -262,7 +262,10 @@ TEST(Price, ByHand) {
   e.trays = 2;
   price(e, profile, {4, 6});
   EXPECT_EQ(e.parts, 4);
-  EXPECT_DOUBLE_EQ(e.assembly_min, 9);
+  EXPECT_DOUBLE_EQ(e.assembly_min, 9 + 10) << "gluing, and cleaning of two trays";
+  EXPECT_DOUBLE_EQ(e.material_cost, 14 + 33);
+  EXPECT_DOUBLE_EQ(e.machine_cost, 5);
+  EXPECT_DOUBLE_EQ(e.hands_cost, 19);
   EXPECT_DOUBLE_EQ(e.cost, 14 + 33 + 5 + (9 + 10) * 1.0);
   EXPECT_EQ(e.currency, "NOK");
 }

@@ -34,9 +34,10 @@ void expect_keys(const Json& object, const std::map<std::string, std::string>& t
 }
 
 const std::map<std::string, std::string> kEstimate = {
-    {"fits", "b"},        {"time_s", "n"},    {"model_mm3", "n"},    {"model_g", "n"},
-    {"support_mm3", "n"}, {"support_g", "n"}, {"cost", "n"},         {"currency", "s"},
-    {"parts", "i"},       {"trays", "i"},     {"assembly_min", "n"}, {"source", "s"}};
+    {"fits", "b"},          {"time_s", "n"},       {"model_mm3", "n"},    {"model_g", "n"},
+    {"support_mm3", "n"},   {"support_g", "n"},    {"cost", "n"},         {"currency", "s"},
+    {"parts", "i"},         {"trays", "i"},        {"assembly_min", "n"}, {"source", "s"},
+    {"material_cost", "n"}, {"machine_cost", "n"}, {"hands_cost", "n"}};
 
 TEST(JobJson, HasEveryKeyOfTheContract) {
   const Json json = job_json(fixtures::sample_job());
@@ -53,6 +54,7 @@ TEST(JobJson, HasEveryKeyOfTheContract) {
                {"parts", "a"},
                {"removal_order", "a"},
                {"estimates", "o"},
+               {"advice", "o"},
                {"timings_s", "o"},
                {"warnings", "a"},
                {"variant", "s"}},

@@ -62,9 +62,11 @@ inline Job sample_job(int trays = 1) {
   job.parts[2].neighbours = {{1, 12.5}};
   job.removal_order = {3, 4, 2, 1};
   job.shell_volume_mm3 = 12345;
-  job.estimates.packed = Estimate{3600, 1000, 1.2, 200, 0.2, 12.5, "EUR", 4, trays, 3.5};
+  job.estimates.packed = Estimate{3600, 1000, 1.2, 200, 0.2, 12.5, "EUR", 2, 3, 7.5, 4, trays, 3.5};
   job.estimates.solid = Estimate{7200, 2000, 2.4, 400, 0.4, 15, "EUR"};
   job.estimates.solid->source = EstimateSource::kSlicer;
+  job.advised = "packed";
+  job.advice = "Pack it.";
   job.timings_s = {{"reading", 0.5}, {"packing", 2.5}};
   job.warnings = {{"sealed_cavity", "One cavity of 8000 mm³ traps support"}};
   return job;
