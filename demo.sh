@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The whole path in one command: a model dropped in a watched folder ends as a recorded print on a
-# simulated Replicator. Everything it makes lies in build/demo.
+# What the program is for, in one command, through the daemon's watched folders: a bunny whose packing
+# saves a PolyJet printer most of its time and support, put in the hand-over folder, and an arch too
+# long for a Replicator, divided, packed and printed on a simulated one. All it makes lies in build/demo.
 #   ./demo.sh web   afterwards the daemon goes on, with its page for a browser, until Ctrl-C
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -8,17 +9,19 @@ source src/install/install.sh
 
 say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
 
+[ -x build/bin/packmerger ] || say "The first run installs packages (a few minutes) and builds everything (about twenty minutes on two cores, ten on four); the next take about a minute"
 install_packages
 install_npm_packages
-say "Building (some minutes the first time)"
+say "Building"
 cmake --preset release >/dev/null
 cmake --build build --target packmerger packmergerd packmerger-tetgen page | tail -n 1
 
 export PATH=$PWD/build/bin:$PATH
 demo=$PWD/build/demo
 rm -rf "$demo"
-mkdir -p "$demo/state" "$demo/drop"
+mkdir -p "$demo/state" "$demo/objet30" "$demo/replicator" "$demo/objet-studio"
 node tests/fixtures/bunny_obj.js "$demo/bunny.obj"
+node tests/fixtures/arch_obj.js "$demo/arch.obj"
 
 cleanup() {
   local status=$? child
@@ -36,7 +39,7 @@ until [ -s "$demo/address" ]; do kill -0 "$printer"; sleep 0.1; done
 port=$(head -n 1 "$demo/address")
 echo "It listens at $port and records what it executes in build/demo/printed.txt"
 
-say "Starting the daemon with a watched folder"
+say "Starting the daemon with two printers, and a watched folder for each"
 cat > "$demo/packmergerd.toml" <<EOF
 state = "state"
 
@@ -44,15 +47,22 @@ state = "state"
 port = $([ "${1:-}" = web ] && echo 8310 || echo 0)
 trust_local = false
 
+# takes no job by wire: finished trays are put where its own software looks for them
+[printer.objet30]
+profile = "objet30"
+handoff_folder = "objet-studio"
+folder = "objet30"
+size_mm = 120
+approve = "auto"
+
 [printer.replicator]
 profile = "replicator"
 port = "$port"
-folder = "drop"
+folder = "replicator"
 simulated = true
 approve = "ask"
-size_mm = 60
-# a toy is not worth a dozen parts: each is to hold a tenth of it at least
-set = ["min_volume_fraction=0.1"]
+# so slim an arch is printed with the slicer's infill
+hollow = false
 EOF
 packmergerd --config "$demo/packmergerd.toml" 2> "$demo/daemon.log" &
 daemon=$!
@@ -60,19 +70,20 @@ export PACKMERGER_SOCKET=$demo/state/packmergerd.sock
 until packmerger printers list >/dev/null 2>&1; do kill -0 "$daemon"; sleep 0.1; done
 packmerger printers list
 
-# field NAME: one value of the job's JSON.
+# field JOB NAME: one value of the job's JSON.
 field() {
-  packmerger jobs show 1 --json |
-    node -e 'const job = JSON.parse(require("fs").readFileSync(0)); console.log(job[process.argv[1]] ?? "")' "$1"
+  packmerger jobs show "$1" --json |
+    node -e 'const job = JSON.parse(require("fs").readFileSync(0)); console.log(job[process.argv[1]] ?? "")' "$2"
 }
 
-# wait_for STATE...: shows the job's progress until it is in one of the states.
+# wait_for JOB STATE...: shows the job's progress until it is in one of the states.
 wait_for() {
-  local state status shown=
+  local job=$1 state status shown=
+  shift
   while true; do
     kill -0 "$daemon"
-    state=$(field state 2>/dev/null || true)
-    status=$(field status 2>/dev/null || true)
+    state=$(field "$job" state 2>/dev/null || true)
+    status=$(field "$job" status 2>/dev/null || true)
     [ "$status" = "$shown" ] || echo "  $status"
     shown=$status
     case " $* " in *" $state "*) return 0 ;; esac
@@ -81,30 +92,44 @@ wait_for() {
   done
 }
 
-say "Dropping bunny.obj in build/demo/drop, to be made 60 mm long"
-cp "$demo/bunny.obj" "$demo/drop/bunny.obj"
-wait_for ready
+say "1. A bunny for the Objet30: dropping bunny.obj in build/demo/objet30, to be made 120 mm long"
+cp "$demo/bunny.obj" "$demo/objet30/bunny.obj"
+wait_for 1 handed_over
 
-say "What printing it takes, packed against unpacked"
+say "What printing it takes, packed against in one piece"
 packmerger jobs show 1
+echo
+echo "It was packed and pays, and approve = \"auto\": so it was put in the hand-over folder at once."
 
-say "Approving the job and printing it"
-packmerger jobs approve 1
-wait_for done
-# The record holds one action a line, in hex; 9a ends a build (docs/PROTOCOLS.md).
-until grep -q '^9a' "$demo/printed.txt"; do kill -0 "$printer"; sleep 0.1; done
-echo "The printer recorded the end of the build: $(wc -l < "$demo/printed.txt") commands."
+say "2. An arch of 300 mm, too long for the Replicator: dropping arch.obj in build/demo/replicator"
+cp "$demo/arch.obj" "$demo/replicator/arch.obj"
+wait_for 2 ready
+
+say "What printing it takes: only in parts does it fit"
+packmerger jobs show 2
+
+say "Approving it and printing every tray on the simulated Replicator"
+packmerger jobs approve 2
+wait_for 2 done
+# The record holds one action a line, in hex; 9a ends a build (docs/PROTOCOLS.md), one for each tray.
+trays=$(field 2 trays)
+until [ "$(grep -c '^9a' "$demo/printed.txt")" -ge "$trays" ]; do kill -0 "$printer"; sleep 0.1; done
+echo "Trays printed: $trays of $trays. The printer recorded $(wc -l < "$demo/printed.txt") commands."
 
 say "Where everything lies"
-folder=$(field folder)
+handed=$(find "$demo/objet-studio" -mindepth 1 -maxdepth 1 -type d)
+bunny=$(field 1 folder)
+arch=$(field 2 folder)
 cat <<EOF
-  job folder    $folder
-  picture       $folder/preview.png
-  3D scenes     $folder/preview.glb, $folder/assembly.glb
-  tray          $folder/tray.3mf
-  program       $folder/program.x3g
-  print record  $demo/printed.txt
-  your model    $(field filed)
+  the bunny     picture       $bunny/preview.png
+                3D scenes     $bunny/preview.glb, $bunny/assembly.glb
+                handed over   $handed
+                your model    $(field 1 filed)
+  the arch      picture       $arch/preview.png
+                3D scenes     $arch/preview.glb, $arch/assembly.glb
+                programs      $(cd "$arch" && printf "$arch/%s " program*.x3g)
+                print record  $demo/printed.txt
+                your model    $(field 2 filed)
 EOF
 if [ "${1:-}" = web ]; then
   say "The page: $(packmerger keys link 2>/dev/null)"
