@@ -136,7 +136,8 @@ void add_pack(PackSettings& s, std::vector<Key>& keys) {
   keys.insert(
       keys.end(),
       {{"gap_mm", NumberKey{&s.gap_mm, from_to(0, 50)}, "mm",
-        "The least distance between any two parts, in every direction."},
+        "The least distance between any two parts, in every direction. At 0 they keep "
+        "0.001 mm, so that they never touch."},
        {"grid_mm", NumberKey{&s.grid_mm, from_to(0.1, 20)}, "mm",
         "The cell of the height field that parts are placed on."},
        {"rotation_step_deg", NumberKey{&s.rotation_step_deg, from_to(5, 360)}, "degrees",
