@@ -5,21 +5,12 @@
  *   FAILING_DISK_WHEN  the file; its text: "FIRST COUNT ERRNO", calls counted from 1
  *   FAILING_DISK_TOLD  a file that gets one byte for each call that failed
  */
-#define _GNU_SOURCE
-#include <dlfcn.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <stdarg.h>
+#include "real_call.h"
+
 #include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
-#include <sys/types.h>
 #include <sys/uio.h>
-#include <unistd.h>
 
 static atomic_long calls;
 
@@ -42,18 +33,13 @@ static int trouble(void) {
   int cause = 0;
   const long number = atomic_fetch_add(&calls, 1) + 1;
   const char* when = getenv("FAILING_DISK_WHEN");
-  const char* told = getenv("FAILING_DISK_TOLD");
   const int file = when == NULL ? -1 : (int)syscall(SYS_openat, AT_FDCWD, when, O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
   const ssize_t size = read(file, text, sizeof text - 1);
   close(file);
   if (size <= 0 || sscanf(text, "%ld %ld %d", &first, &count, &cause) != 3) return 0;
   if (number < first || number >= first + count) return 0;
-  const int note = (int)syscall(SYS_openat, AT_FDCWD, told, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
-  if (note >= 0) {
-    syscall(SYS_write, note, "x", 1);
-    close(note);
-  }
+  tell_test("FAILING_DISK_TOLD");
   return cause;
 }
 
@@ -65,18 +51,9 @@ static int fails_at_path(const char* path) {
 }
 
 static int fails_at_fd(int fd) {
-  char link[64];
   char path[PATH_MAX];
-  const int before = errno;
-  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
-  const ssize_t size = readlink(link, path, sizeof path - 1);
-  errno = before;
-  if (size <= 0) return 0;
-  path[size] = 0;
-  return fails_at_path(path);
+  return find_path(fd, path) && fails_at_path(path);
 }
-
-#define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
 ssize_t write(int fd, const void* data, size_t size) { return fails_at_fd(fd) ? -1 : REAL(write)(fd, data, size); }
 ssize_t writev(int fd, const struct iovec* parts, int count) {
@@ -101,17 +78,11 @@ int unlink(const char* path) { return fails_at_path(path) ? -1 : REAL(unlink)(pa
 int mkdir(const char* path, mode_t mode) { return fails_at_path(path) ? -1 : REAL(mkdir)(path, mode); }
 int mkostemp(char* name, int flags) { return fails_at_path(name) ? -1 : REAL(mkostemp)(name, flags); }
 
-#define OPEN(name)                                                               \
-  int name(const char* path, int flags, ...) {                                   \
-    mode_t mode = 0;                                                             \
-    if (flags & (O_CREAT | __O_TMPFILE)) {                                       \
-      va_list rest;                                                              \
-      va_start(rest, flags);                                                     \
-      mode = va_arg(rest, mode_t);                                               \
-      va_end(rest);                                                              \
-    }                                                                            \
-    if ((flags & O_CREAT) && fails_at_path(path)) return -1;                     \
-    return REAL(name)(path, flags, mode);                                        \
+#define OPEN(name)                                           \
+  int name(const char* path, int flags, ...) {               \
+    MODE_OF(flags)                                           \
+    if ((flags & O_CREAT) && fails_at_path(path)) return -1; \
+    return REAL(name)(path, flags, mode);                    \
   }
 OPEN(open)
 OPEN(open64)

@@ -5,23 +5,14 @@
  *   HANGING_DISK_WHEN  the file
  *   HANGING_DISK_TOLD  a file that gets one byte for each call that waits
  */
-#define _GNU_SOURCE
+#include "real_call.h"
+
 #include <dirent.h>
-#include <dlfcn.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <stdarg.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
-#include <sys/types.h>
 #include <time.h>
-#include <unistd.h>
 
 static int lies_below(const char* path) {
   const char* folder = getenv("HANGING_DISK");
@@ -42,12 +33,7 @@ static int hangs(void) {
 static void wait_at_path(const char* path) {
   const int before = errno;
   if (lies_below(path) && hangs()) {
-    const char* told = getenv("HANGING_DISK_TOLD");
-    const int note = told == NULL ? -1 : (int)syscall(SYS_openat, AT_FDCWD, told, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
-    if (note >= 0) {
-      syscall(SYS_write, note, "x", 1);
-      close(note);
-    }
+    tell_test("HANGING_DISK_TOLD");
     const struct timespec pause = {0, 10 * 1000 * 1000};
     while (hangs()) nanosleep(&pause, NULL);
   }
@@ -55,18 +41,10 @@ static void wait_at_path(const char* path) {
 }
 
 static void wait_at_fd(int fd) {
-  char link[64];
   char path[PATH_MAX];
-  const int before = errno;
-  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
-  const ssize_t size = readlink(link, path, sizeof path - 1);
-  errno = before;
-  if (size <= 0) return;
-  path[size] = 0;
-  wait_at_path(path);
+  if (find_path(fd, path)) wait_at_path(path);
 }
 
-#define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 #define AT_PATH(type, name, parameters, path, ...) \
   type name parameters {                           \
     wait_at_path(path);                            \
@@ -108,16 +86,6 @@ int renameat2(int at, const char* from, int to_at, const char* to, unsigned flag
   wait_at_path(to);
   return REAL(renameat2)(at, from, to_at, to, flags);
 }
-
-/* The mode that comes with O_CREAT. */
-#define MODE_OF(flags)                         \
-  mode_t mode = 0;                             \
-  if (((flags) & (O_CREAT | O_TMPFILE)) != 0) { \
-    va_list more;                              \
-    va_start(more, flags);                     \
-    mode = va_arg(more, mode_t);               \
-    va_end(more);                              \
-  }
 
 int open(const char* path, int flags, ...) {
   MODE_OF(flags)
