@@ -53,13 +53,22 @@ KeyRing::KeyRing(std::filesystem::path file) : file_(std::move(file)) {
   }
 }
 
-void KeyRing::save(const std::vector<WebKey>& keys) const {
+void KeyRing::keep(std::vector<WebKey> keys) {
   json list = json::array();
   for (const WebKey& key : keys) {
     list.push_back({{"name", key.name}, {"sha256", key.sha256}, {"made_s", key.made_s}});
     if (key.looks_only) list.back()["may"] = "look";
   }
   write_file_whole(file_, list.dump(2) + "\n", kOwnerOnly);
+  keys_ = std::move(keys);
+}
+
+std::string KeyRing::keep_with(std::vector<WebKey> keys, const std::string& name,
+                               const std::string& beginning, bool looks_only) {
+  const std::string text = beginning + random_text(kKeyBytes);
+  keys.push_back({name, sha256_hex(text), wall_clock_s(), looks_only});
+  keep(std::move(keys));
+  return text;
 }
 
 std::string KeyRing::add(const std::string& name) {
@@ -67,16 +76,11 @@ std::string KeyRing::add(const std::string& name) {
     throw Error(Fault::kUsage, "A key's name has letters, digits, spaces, '-', '_' and '.'",
                 "Name it after the program or person that will use it.");
   const std::lock_guard lock(mutex_);
-  std::vector<WebKey> keys = keys_;
-  for (const WebKey& key : keys)
+  for (const WebKey& key : keys_)
     if (key.name == name)
       throw Error(Fault::kUsage, "There is a key named " + name + " already",
                   "Revoke it first, or choose another name.");
-  const std::string text = "pm_" + random_text(kKeyBytes);
-  keys.push_back({name, sha256_hex(text), wall_clock_s(), false});
-  save(keys);
-  keys_ = std::move(keys);
-  return text;
+  return keep_with(keys_, name, "pm_", false);
 }
 
 std::optional<std::string> KeyRing::look(std::string_view code, double now_s) {
@@ -90,11 +94,7 @@ std::optional<std::string> KeyRing::look(std::string_view code, double now_s) {
   const auto is_taken = [&](const WebKey& key) { return key.name == page_name(number); };
   do ++number;
   while (std::any_of(keys.begin(), keys.end(), is_taken));
-  const std::string text = "pm_look_" + random_text(kKeyBytes);
-  keys.push_back({page_name(number), sha256_hex(text), wall_clock_s(), true});
-  save(keys);
-  keys_ = std::move(keys);
-  return text;
+  return keep_with(std::move(keys), page_name(number), "pm_look_", true);
 }
 
 void KeyRing::revoke(const std::string& name) {
@@ -102,8 +102,7 @@ void KeyRing::revoke(const std::string& name) {
   std::vector<WebKey> keys = keys_;
   if (std::erase_if(keys, [&](const WebKey& key) { return key.name == name; }) == 0)
     throw Error(Fault::kNoInput, "There is no such key", "packmerger keys list shows them.");
-  save(keys);
-  keys_ = std::move(keys);
+  keep(std::move(keys));
 }
 
 bool KeyRing::empty() const {

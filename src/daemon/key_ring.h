@@ -46,7 +46,11 @@ class KeyRing {
   std::optional<WebKey> find(std::string_view text) const;
 
  private:
-  void save(const std::vector<WebKey>& keys) const;
+  // Writes the keys down, and only then counts by them.
+  void keep(std::vector<WebKey> keys);
+  // Keeps these and a new one, whose text begins with `beginning`. Returns that text.
+  std::string keep_with(std::vector<WebKey> keys, const std::string& name,
+                        const std::string& beginning, bool looks_only);
 
   std::filesystem::path file_;
   mutable std::mutex mutex_;  // guards keys_
