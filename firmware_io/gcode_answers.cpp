@@ -58,11 +58,12 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
       std::any_of(unanswered_.begin(), behind, [](const Given& g) { return g.number > 0; });
   unanswered_.erase(unanswered_.begin(), behind + 1);
   if (given.asks_temperatures) {
-    // Answers come in order, so whatever was still owed got lost.
+    // Answers come in order, so whatever was still owed got lost, but not a line that was given
+    // behind the question.
     taken_for_granted_ = lost && !resend_;
-    unanswered_.clear();
+    std::erase_if(unanswered_, [](const Given& each) { return each.number == 0; });
     m105_behind_ = false;
-    proven_ = last_;
+    proven_ = unanswered_.empty() ? last_ : unanswered_.front().number - 1;
   }
   if (resend_)
     resend_->due_s = channel_.now_s() + kSettle_s;
@@ -108,7 +109,9 @@ bool GcodeStream::proves_life(const GcodeReply& reply) {
 void GcodeStream::handle_busy(const GcodeReply& reply) {
   const double now = channel_.now_s();
   busy_seen_ = true;
-  busy_interval_s_ = std::max(busy_interval_s_, now - std::exchange(busy_at_s_, now));
+  // Of a pause the machine may say nothing at all until somebody comes.
+  const double interval_s = now - std::exchange(busy_at_s_, now);
+  if (!stands_still()) busy_interval_s_ = std::max(busy_interval_s_, interval_s);
   if (cancelling_)
     hear_while_cancelling(reply);
   else if (reply.waiting)
