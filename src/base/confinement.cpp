@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <linux/filter.h>
+#include <linux/fs.h>
+#include <linux/fsverity.h>
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
 #include <sched.h>
@@ -92,11 +94,11 @@ constexpr int kForbidden[] = {
     SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(process_madvise),
     SCMP_SYS(mount), SCMP_SYS(umount2), SCMP_SYS(move_mount), SCMP_SYS(open_tree), SCMP_SYS(fsopen),
     SCMP_SYS(pivot_root), SCMP_SYS(chroot), SCMP_SYS(unshare), SCMP_SYS(setns), SCMP_SYS(bpf),
-    SCMP_SYS(perf_event_open), SCMP_SYS(userfaultfd), SCMP_SYS(add_key), SCMP_SYS(request_key),
-    SCMP_SYS(keyctl), SCMP_SYS(init_module), SCMP_SYS(finit_module), SCMP_SYS(delete_module),
-    SCMP_SYS(kexec_load), SCMP_SYS(kexec_file_load), SCMP_SYS(reboot), SCMP_SYS(swapon),
-    SCMP_SYS(swapoff), SCMP_SYS(settimeofday), SCMP_SYS(clock_settime), SCMP_SYS(adjtimex),
-    SCMP_SYS(open_by_handle_at),
+    SCMP_SYS(perf_event_open), SCMP_SYS(ioprio_set), SCMP_SYS(userfaultfd), SCMP_SYS(add_key),
+    SCMP_SYS(request_key), SCMP_SYS(keyctl), SCMP_SYS(init_module), SCMP_SYS(finit_module),
+    SCMP_SYS(delete_module), SCMP_SYS(kexec_load), SCMP_SYS(kexec_file_load), SCMP_SYS(reboot),
+    SCMP_SYS(swapon), SCMP_SYS(swapoff), SCMP_SYS(settimeofday), SCMP_SYS(clock_settime),
+    SCMP_SYS(adjtimex), SCMP_SYS(open_by_handle_at),
     // newer than Debian's libseccomp: fchmodat2, setxattrat, removexattrat, open_tree_attr,
     // file_setattr
     452, 463, 466, 467, 469};
@@ -130,6 +132,11 @@ std::vector<ForbiddenArgument> forbidden_arguments() {
       {SCMP_SYS(fcntl), command(1, F_SETOWN_EX)},
       {SCMP_SYS(fcntl), command(1, F_SETSIG)},
       // types in the terminal that the daemon was started from
+      // attributes, of whatever could be opened to be read
+      {SCMP_SYS(ioctl), command(1, FS_IOC_SETFLAGS)},
+      {SCMP_SYS(ioctl), command(1, FS_IOC32_SETFLAGS)},
+      {SCMP_SYS(ioctl), command(1, FS_IOC_FSSETXATTR)},
+      {SCMP_SYS(ioctl), command(1, FS_IOC_ENABLE_VERITY)},
       {SCMP_SYS(ioctl), command(1, TIOCSTI)},
       {SCMP_SYS(ioctl), command(1, TIOCLINUX)},
   };

@@ -81,9 +81,7 @@ class Sha256 {
 
 fs::path make_private_folder(const fs::path& pattern) {
   std::string name = pattern.string();
-  const std::lock_guard lock(remains().mutex);
   if (::mkdtemp(name.data()) == nullptr) cannot_write(pattern, reason());
-  remains().folders.insert(name);
   return name;
 }
 
@@ -187,15 +185,17 @@ std::string sha256_hex_of_file(const fs::path& path) {
 }
 
 TemporaryFolder::TemporaryFolder()
-    : path_(make_private_folder(fs::temp_directory_path() / "packmerger.XXXXXX")) {}
+    : TemporaryFolder(make_private_folder(fs::temp_directory_path() / "packmerger.XXXXXX")) {}
+
+TemporaryFolder::TemporaryFolder(fs::path path) : path_(std::move(path)) {
+  const std::lock_guard lock(remains().mutex);
+  remains().folders.insert(path_);
+}
 
 TemporaryFolder TemporaryFolder::beside(const fs::path& target) {
   const fs::path whole = fs::absolute(target).lexically_normal();
   const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
-  const std::lock_guard lock(remains().mutex);
-  const fs::path made = make_beside(clean, [](const char* free) { return ::mkdir(free, 0755); });
-  remains().folders.insert(made);
-  return TemporaryFolder(made);
+  return TemporaryFolder(make_beside(clean, [](const char* free) { return ::mkdir(free, 0755); }));
 }
 
 TemporaryFolder::~TemporaryFolder() {
@@ -210,12 +210,19 @@ void TemporaryFolder::publish(const fs::path& target) {
   const fs::path whole = fs::absolute(target).lexically_normal();
   const fs::path clean = whole.has_filename() ? whole : whole.parent_path();
   sync_tree(path_);
+  // What is whole is nothing to be removed. Under the lock nothing waits for a disk, which may
+  // hang.
   {
     const std::lock_guard lock(remains().mutex);
-    const int why = rename_keeping(path_, clean);
-    if (why != 0) cannot_write(clean, std::strerror(why));
-    remains().folders.erase(std::exchange(path_, {}));
+    remains().folders.erase(path_);
   }
+  const int why = rename_keeping(path_, clean);
+  if (why != 0) {
+    const std::lock_guard lock(remains().mutex);
+    remains().folders.insert(path_);
+    cannot_write(clean, std::strerror(why));
+  }
+  path_.clear();
   sync_folder(clean.parent_path());
 }
 

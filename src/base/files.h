@@ -56,7 +56,7 @@ class TemporaryFolder {
   void publish(const fs::path& target);
 
  private:
-  explicit TemporaryFolder(fs::path path) : path_(std::move(path)) {}
+  explicit TemporaryFolder(fs::path path);
   fs::path path_;
 };
 

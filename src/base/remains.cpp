@@ -36,7 +36,8 @@ Remains& remains() {
 
 void end_without_remains(int exit_code) {
   Remains& all = remains();
-  // Held to the end, so that nothing new is made and nothing half removed is moved to its place.
+  // Held to the end, so that no process is started any more, and nothing half removed is moved to
+  // its place.
   if (all.mutex.try_lock_for(kPatience)) {
     for (const pid_t group : all.groups) signal_group(group, SIGKILL);
     for (int i = 0; i < kAttempts && !are_gone(all.folders); ++i)

@@ -9,8 +9,9 @@
 
 namespace packmerger {
 
-// Kept by TemporaryFolder and ChildProcess, under the mutex also while a folder is made or moved
-// away and while a process is started.
+// Kept by TemporaryFolder and ChildProcess; under the mutex also while a process is started, and
+// never while a disk is waited for. A folder is on it from just after it was made until just before
+// it is moved to its place.
 struct Remains {
   std::timed_mutex mutex;
   std::set<std::filesystem::path> folders;  // temporary ones

@@ -107,7 +107,7 @@ Calibration calibration_of(const Profile& profile, const std::vector<StatedPrint
                            Warnings warnings) {
   std::vector<CalibrationPrint> prints;
   {
-    watch_for_late_stop();
+    const LateStop late_stop;
     const Progress progress = terminal_progress();
     for (const StatedPrint& print : stated)
       prints.push_back(measured_print(profile, print, warnings, progress));

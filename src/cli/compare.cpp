@@ -29,7 +29,7 @@ void run(const Arguments& arguments) {
   nlohmann::json all = nlohmann::json::object();
   std::vector<Job> jobs;
   {
-    watch_for_late_stop();
+    const LateStop late_stop;
     const Progress progress = terminal_progress();
     for (const Profile& profile : profiles)
       jobs.push_back(plan(profile, plan_options(arguments.plan), progress).job);

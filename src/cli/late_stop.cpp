@@ -22,8 +22,10 @@ sem_t asked;
 std::atomic<bool> watching{false};
 
 void wait_and_end() {
-  while (::sem_wait(&asked) != 0 && errno == EINTR) continue;
-  std::this_thread::sleep_for(kPatience);
+  do {
+    while (::sem_wait(&asked) != 0 && errno == EINTR) continue;
+    std::this_thread::sleep_for(kPatience);
+  } while (!watching);  // it was obeyed, or what it was for is done
   // Past the streams, whose locks others may hold.
   constexpr std::string_view kTold = "\nerror: Interrupted.\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kTold.data(), kTold.size());
@@ -32,12 +34,16 @@ void wait_and_end() {
 
 }  // namespace
 
-void watch_for_late_stop() {
-  if (watching) return;
-  ::sem_init(&asked, 0, 0);
-  watching = true;
-  std::thread(wait_and_end).detach();
+LateStop::LateStop() {
+  static const bool begun = [] {
+    ::sem_init(&asked, 0, 0);
+    std::thread(wait_and_end).detach();
+    return true;
+  }();
+  watching = begun;
 }
+
+LateStop::~LateStop() { watching = false; }
 
 void stop_asked() {
   if (watching) ::sem_post(&asked);

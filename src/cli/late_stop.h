@@ -3,10 +3,16 @@
 
 namespace packmerger::cli {
 
-// For verbs that only compute, never for one that prints: if the program still runs a second after
-// stop_asked(), it is ended there and then, with the exit code of an interruption and without its
-// temporary folders and children.
-void watch_for_late_stop();
+// For what only computes, never for a print: while one is there and goes on to be there a second
+// after stop_asked(), the program is ended there and then, with the exit code of an interruption
+// and without its temporary folders and children.
+class LateStop {
+ public:
+  LateStop();
+  LateStop(const LateStop&) = delete;
+  LateStop& operator=(const LateStop&) = delete;
+  ~LateStop();
+};
 
 // Async-signal-safe. Without a watch nothing happens.
 void stop_asked();

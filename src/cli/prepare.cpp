@@ -62,7 +62,7 @@ void take_as_it_is(const Arguments& arguments, const Profile& profile) {
   check_job_folder(arguments.out);
   ReadyProgram program;
   {
-    watch_for_late_stop();
+    const LateStop late_stop;
     const Progress progress = terminal_progress();
     program = read_ready_program(profile, arguments.plan.models.front(), progress);
     write_program_folder(program, arguments.out);
@@ -87,7 +87,7 @@ void run(const Arguments& arguments, const CLI::App& verb) {
   }
   Job job;
   {
-    watch_for_late_stop();
+    const LateStop late_stop;
     const Progress progress = terminal_progress();
     job =
         prepare(profile, plan_options(arguments.plan), arguments.variant, arguments.out, progress);
