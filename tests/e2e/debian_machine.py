@@ -81,8 +81,13 @@ class Machine:
         self.log = open(log, "wb")
         self.nspawn = subprocess.Popen(boot, stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log,
                                        env=dict(os.environ, SYSTEMD_NSPAWN_UNIFIED_HIERARCHY="1"))
-        self.init = self.wait_for(self.find_init, "the machine's first process")
-        self.wait_for(lambda: self.run("systemctl", "is-system-running").stdout.strip() in ("running", "degraded"), "its start")
+        try:
+            self.init = self.wait_for(self.find_init, "the machine's first process")
+            self.wait_for(lambda: self.run("systemctl", "is-system-running").stdout.strip() in ("running", "degraded"), "its start")
+        except BaseException:
+            self.nspawn.kill()  # nobody else knows of it yet, and its folder is removed
+            self.nspawn.wait()
+            raise
 
     def find_init(self):
         """The process that is the first one in there."""
