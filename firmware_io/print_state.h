@@ -38,6 +38,13 @@ struct PrintReport {
   std::optional<double> remaining_s;  // learned while printing; pauses to come are not in it
 };
 
+// Whether the first byte of the job was sent, or is about to be.
+inline bool has_begun(const PrintReport& report) {
+  return report.done > 0 ||
+         (report.state != PrintState::kConnecting && report.state != PrintState::kWaiting &&
+          report.state != PrintState::kCancelling);
+}
+
 // Called on the thread that prints: at every change of state, and otherwise from once to ten times
 // a second. Before the first byte of the job is sent the state is kPrinting; nothing but
 // kConnecting, and kWaiting at a printer that cannot begin, comes before. Must return quickly; an
@@ -76,8 +83,8 @@ class PrintControl {
   void stop_at_once() { stopped_ = true; }
   bool stopped() const { return stopped_; }
 
-  // For a person who waits no longer for a cancel: the link writes what turns the heaters off, waits
-  // for nothing and ends. What cancels at once anyway only cancels.
+  // For a person who waits no longer for a cancel: the link writes what turns the heaters off,
+  // waits for nothing and ends. What cancels at once anyway only cancels.
   void leave() {
     left_ = true;
     cancelled_ = true;

@@ -235,6 +235,7 @@ void add_jobs(CLI::App& program) {
   for (const auto& [name, help] :
        {std::pair{"approve", "Lets a job be printed; also ends a hold"},
         std::pair{"hold", "Keeps a job from being printed until it is approved"},
+        std::pair{"first", "Lets a job go before all others that wait"},
         std::pair{"cancel", "Ends a job; a print is stopped in the printer's own way"},
         std::pair{"again", "Makes a new job from one that has ended"},
         std::pair{"delete",

@@ -125,6 +125,7 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
       {"jobs.show", show_job},
       {"jobs.approve", change_job<&Foreman::approve>},
       {"jobs.hold", change_job<&Foreman::hold>},
+      {"jobs.first", change_job<&Foreman::put_first>},
       {"jobs.cancel", change_job<&Foreman::cancel>},
       {"jobs.again", change_job<&Foreman::again>},
       {"jobs.prepare", prepare_job},

@@ -24,8 +24,8 @@ constexpr std::int64_t kMostPieces = 1000000;
   throw Error(Fault::kBadInput, "What was prepared cannot be understood: " + what, kPrepareAnew);
 }
 
-// A way that does not fit has no figures: null, or none at all. What a program does not tell is null
-// too, but never its time.
+// A way that does not fit has no figures: null, or none at all. What a program does not tell is
+// null too, but never its time.
 void check_way(const std::string& name, const json& way) {
   if (!way.is_object()) refuse("the estimate " + printable(name) + " is no object");
   const auto fits = way.find("fits");

@@ -152,13 +152,17 @@ void Foreman::advance(double now_s) {
   std::vector<std::int64_t> jobs;
   for (const auto& [id, job] : open)
     if (may_step(job)) jobs.push_back(id);
-  // a job whose first trays are printed goes before the others
-  std::stable_partition(jobs.begin(), jobs.end(),
-                        [&](std::int64_t id) { return open.at(id).next_tray > 1; });
+  std::sort(jobs.begin(), jobs.end(), [&](std::int64_t a, std::int64_t b) {
+    return turn_of(open.at(a)) < turn_of(open.at(b));
+  });
   for (const std::int64_t id : jobs)
     if (const auto job = open.find(id); job != open.end()) try_for(id, [&] { step(job->second); });
   drop_idle_live_jobs();
   if (!stopping_) cleaner_.serve(now_s);
+}
+
+std::tuple<bool, std::int64_t, std::int64_t> Foreman::turn_of(const JobRecord& job) {
+  return {job.next_tray <= 1, -job.turn, job.id};
 }
 
 // Thousands may wait to be prepared, and this is asked of each at every turn of the loop.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "daemon/choose_printer.h"
@@ -86,6 +87,7 @@ class Foreman {
   // state.
   JobRecord approve(std::int64_t id);  // also ends a hold
   JobRecord hold(std::int64_t id);
+  JobRecord put_first(std::int64_t id);  // before all others that wait
   JobRecord cancel(std::int64_t id);
   // A new job from an ended one: its stored program, which counts as approved where that job was,
   // or its filed model, prepared anew.
@@ -114,6 +116,9 @@ class Foreman {
   JobRecord again_of(const JobRecord& ended) const;
   // Whether the settings, or whoever sent it, approve a job that is ready.
   bool is_approved_by_itself(const JobRecord& ready) const;
+  // Of jobs that could be gone on with, that with the least comes first: one of which trays are
+  // printed already, then the one that was put first last, then the one that came first.
+  static std::tuple<bool, std::int64_t, std::int64_t> turn_of(const JobRecord& job);
   // The job that is with the printer's sender; 0: none.
   std::int64_t sending_at(const std::string& printer) const;
   // How much longer the printer takes than estimates of this source predict, as its finished prints
@@ -152,6 +157,7 @@ class Foreman {
   void claim(const JobRecord& job);
   bool take_upload(const JobRecord& job, const std::filesystem::path& file);
   void settle(JobRecord job);
+  void forget_trouble(std::int64_t id);
   void forget(const JobRecord& job);
   void finish_claim(const JobRecord& job);
   void hold_up(const JobRecord& job, const std::string& trouble);

@@ -42,7 +42,8 @@ double Foreman::busy_for_s(const PrinterConfig& printer, std::int64_t new_job,
   for (const auto& [id, job] : store_.open_jobs()) {
     if (job.printer != printer.name || job.held || has_ended(job.state)) continue;
     const double left_s = std::max(0.0, job.predicted_s - job.printed_s);
-    if (is_being_prepared(job.state) && id < new_job) sum_s += like_s;
+    const bool is_before = id < new_job || job.turn > 0 || job.state == JobState::kPreparing;
+    if (is_being_prepared(job.state) && is_before && id != new_job) sum_s += like_s;
     if (job.state == JobState::kReady || job.state == JobState::kApproved) sum_s += left_s;
     if (job.state != JobState::kSending) continue;
     const LiveJob* running = live(id);

@@ -100,7 +100,7 @@ void Foreman::on(const SendProgress& event) {
   if (found == live_.end() || !found->second.control) return;
   found->second.print = event.report;
   if (event.report.state == PrintState::kConnecting) return;
-  if (!std::exchange(found->second.trouble, {}).empty())
+  if (has_begun(event.report) && !std::exchange(found->second.trouble, {}).empty())
     if (const std::optional<JobRecord> job = store_.find(event.job)) say(*job, "started after all");
   for (const auto& [printer, job] : sending_)
     if (job == event.job) reached_[printer] = true;

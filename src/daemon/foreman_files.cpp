@@ -95,7 +95,19 @@ void Foreman::on(const Fetched& event) {
 void Foreman::settle(JobRecord job) {
   job.state = JobState::kReceived;
   store_.save(job);
+  forget_trouble(job.id);
   say(job, "received");
+}
+
+// What kept it from its last step does not keep it from the next.
+void Foreman::forget_trouble(std::int64_t id) {
+  const auto found = live_.find(id);
+  if (found == live_.end()) return;
+  LiveJob& live = found->second;
+  live.trouble.clear();
+  live.stage.clear();
+  live.failures = 0;
+  live.retry_s = 0;
 }
 
 void Foreman::forget(const JobRecord& job) {

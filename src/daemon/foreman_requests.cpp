@@ -53,6 +53,7 @@ void forget_what_was_prepared(JobRecord& job) {
   job.variant.clear();
   job.approved = job.at_once = job.pays = false;
   job.reason.clear();
+  job.hint.clear();
   job.doubt.clear();
 }
 
@@ -113,6 +114,20 @@ JobRecord Foreman::hold(std::int64_t id) {
   job.held = true;
   store_.save(job, "held");
   say(job, "held");
+  return job;
+}
+
+JobRecord Foreman::put_first(std::int64_t id) {
+  JobRecord job = get(id);
+  if (has_ended(job.state)) senseless(job, "", "packmerger jobs again has it printed once more.");
+  if (job.state == JobState::kSending) senseless(job, "", "It waits for nothing any more.");
+  std::int64_t most = 0;
+  for (const auto& [other, record] : store_.open_jobs())
+    if (other != id) most = std::max(most, record.turn);
+  if (job.turn > most) return job;
+  job.turn = most + 1;
+  store_.save(job, "goes before all others that wait");
+  say(job, "goes before all others that wait");
   return job;
 }
 
@@ -182,6 +197,7 @@ JobRecord Foreman::with_file(const JobRecord& old) const {
 
 JobRecord Foreman::prepare(std::int64_t id, const std::string& variant) {
   JobRecord job = get(id);
+  get_printer(job.printer);
   check_variant(job, variant);
   if (has_ended(job.state)) return prepare_again(job, variant);
   const bool waits = job.state == JobState::kReady || job.state == JobState::kReceived ||
@@ -200,6 +216,7 @@ JobRecord Foreman::prepare(std::int64_t id, const std::string& variant) {
   job.state = JobState::kReceived;
   job.wanted = variant;
   forget_what_was_prepared(job);
+  forget_trouble(id);
   store_.save(job, note);
   say(job, note);
   return job;
@@ -232,6 +249,7 @@ JobRecord Foreman::prepare_again(const JobRecord& old, const std::string& wanted
   job.origin = file.origin;
   job.by_copy = true;
   if (!wanted.empty()) job.wanted = wanted;
+  job.held = old.held && !has_ended(old.state);
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job, "the file of job " + std::to_string(old.id) + " again");

@@ -176,6 +176,7 @@ json recorded_view(const JobRecord& job) {
       {"sha256", job.sha256},
       {"state", state_name(job.state)},
       {"held", job.held},
+      {"turn", job.turn},
       {"trays", job.trays},
       {"tray", job.next_tray},
       {"settings", job.with_settings ? json(settings_beside(job.name).string()) : json()},

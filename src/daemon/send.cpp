@@ -128,13 +128,24 @@ fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::st
     throw Error(Fault::kCannotWrite, to.string() + " is no folder that can be written to",
                 "Make the folder, or connect the share it lies on.");
   TemporaryFolder folder = TemporaryFolder::beside(target);
-  for (int tray = 1; tray <= job.trays; ++tray)
-    copy_file_whole(tray_to_send(job_folder, profile, tray),
-                    folder.path() / tray_file(profile, tray));
-  check_documents(folder.path(), profile, job.trays, tray_files);  // the very copies
-  for (const char* file : {"job.json", "preview.png"})
-    copy_file_whole(job_folder / file, folder.path() / file);
-  folder.publish(target);
+  const std::string made = folder.path().string();
+  try {
+    for (int tray = 1; tray <= job.trays; ++tray)
+      copy_file_whole(tray_to_send(job_folder, profile, tray),
+                      folder.path() / tray_file(profile, tray));
+    check_documents(folder.path(), profile, job.trays, tray_files);  // the very copies
+    for (const char* file : {"job.json", "preview.png"})
+      copy_file_whole(job_folder / file, folder.path() / file);
+    // Whoever takes it from there is another program or person, whatever the umask here.
+    fs::permissions(folder.path(), fs::perms{0755}, ignored);
+    folder.publish(target);
+  } catch (const Error& error) {
+    // The same at every attempt: nobody knows the folder for a moment that the copies lie in.
+    std::string what = error.what();
+    for (auto at = what.find(made); at != std::string::npos; at = what.find(made))
+      what.replace(at, made.size(), target.string());
+    throw Error(error.fault(), what, error.hint());
+  }
   return target;
 }
 

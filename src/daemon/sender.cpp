@@ -6,13 +6,6 @@
 namespace packmerger {
 namespace {
 
-// Told by every link before the first byte of the job is sent; a printer may be waited for before.
-bool has_begun(const PrintReport& report) {
-  return report.done > 0 ||
-         (report.state != PrintState::kConnecting && report.state != PrintState::kWaiting &&
-          report.state != PrintState::kCancelling);
-}
-
 SendOutcome outcome_of(const Error& error, bool begun, const PrintControl& control) {
   if (error.fault() == Fault::kInterrupted || control.cancelled()) return SendOutcome::kCancelled;
   const bool later = error.fault() == Fault::kUnavailable || error.fault() == Fault::kBusy ||

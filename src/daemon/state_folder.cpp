@@ -42,7 +42,9 @@ bool take_away(const fs::path& path, mode_t rights) {
 
 }  // namespace
 
-std::vector<std::string> furnish_state_folder(const fs::path& state) {
+std::vector<std::string> furnish_state_folder(const fs::path& named) {
+  // with a slash at its end, what lies above it would be the folder itself
+  const fs::path state = named.has_filename() ? named : named.parent_path();
   std::error_code failed;
   if (state.has_parent_path()) fs::create_directories(state.parent_path(), failed);
   if (failed) cannot_make(state, failed.value());

@@ -18,7 +18,7 @@ std::optional<JobRecord> first_printed(const Foreman& foreman, const std::string
                                        const Supposed& supposed) {
   const auto turn = [&](const JobRecord& job) {
     const LiveJob* live = foreman.live(job.id);
-    return std::tuple(live != nullptr && live->failures > 0, job.next_tray <= 1, job.id);
+    return std::tuple(live != nullptr && live->failures > 0, Foreman::turn_of(job));
   };
   const JobRecord* first = nullptr;
   for (const auto& [id, job] : foreman.store().open_jobs())

@@ -130,9 +130,10 @@ std::function<std::optional<std::string>()> WebEvents::changes(std::string_view 
   reader.wants_changes = true;
   std::uint64_t number = 0;
   const char* end = last_id.data() + last_id.size();
-  if (last_id.starts_with(run_) &&
-      std::from_chars(last_id.data() + run_.size(), end, number).ptr == end)
-    reader.seen = number;
+  if (last_id.starts_with(run_)) {
+    const auto read = std::from_chars(last_id.data() + run_.size(), end, number);
+    if (read.ec == std::errc() && read.ptr == end) reader.seen = number;
+  }
   return begin(reader);
 }
 

@@ -27,6 +27,7 @@ constexpr std::array kRows = {
     Row{"GET", "jobs/{id}", WebTarget::kVerb, Access::kRead, "jobs.show"},
     Row{"POST", "jobs/{id}/approve", WebTarget::kVerb, Access::kChange, "jobs.approve"},
     Row{"POST", "jobs/{id}/hold", WebTarget::kVerb, Access::kChange, "jobs.hold"},
+    Row{"POST", "jobs/{id}/first", WebTarget::kVerb, Access::kChange, "jobs.first"},
     Row{"POST", "jobs/{id}/cancel", WebTarget::kVerb, Access::kChange, "jobs.cancel"},
     Row{"POST", "jobs/{id}/again", WebTarget::kVerb, Access::kChange, "jobs.again"},
     Row{"POST", "jobs/{id}/prepare", WebTarget::kVerb, Access::kChange, "jobs.prepare"},

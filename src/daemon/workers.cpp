@@ -25,8 +25,10 @@ int workers_for(unsigned cores, std::uint64_t memory, std::uint64_t memory_bytes
 }
 
 int workers_of(const PrepareConfig& prepare) {
-  return prepare.workers.value_or(workers_for(std::thread::hardware_concurrency(),
-                                              memory_of_this_machine(), prepare.memory_bytes));
+  // asked once: this is called of each job that waits, at every turn of the loop
+  static const unsigned cores = std::thread::hardware_concurrency();
+  static const std::uint64_t memory = memory_of_this_machine();
+  return prepare.workers.value_or(workers_for(cores, memory, prepare.memory_bytes));
 }
 
 }  // namespace packmerger

@@ -92,10 +92,15 @@ ALTER TABLE job ADD COLUMN wanted TEXT NOT NULL DEFAULT '';
 PRAGMA user_version = 10;
 )";
 
+constexpr const char* kAddTurn = R"(
+ALTER TABLE job ADD COLUMN turn INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 11;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 10> kSteps = {
+constexpr std::array<const char*, 11> kSteps = {
     kMakeTables, kAddTold,      kAddPrograms, kAddSettings, kAddTimes,
-    kAddChoice,  kAddTrayFiles, kAddApproval, kAddDeleting, kAddWanted};
+    kAddChoice,  kAddTrayFiles, kAddApproval, kAddDeleting, kAddWanted, kAddTurn};
 
 }  // namespace
 

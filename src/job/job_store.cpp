@@ -31,7 +31,7 @@ constexpr std::string_view kColumns =
     "told, told_total, variant, at_once, with_settings, predicted_s, "
     "predicted_by, printed_s, paused_s, chosen_by, choice, "
     "profile, seed, tray_files, approved, doubt, deleted_s, "
-    "wanted";
+    "wanted, turn";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -63,7 +63,7 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
   statement.bind(job.profile).bind(job.seed).bind(job.tray_files);
   statement.bind(flag(job.approved)).bind(job.doubt).bind(job.deleted_s);
-  statement.bind(job.wanted);
+  statement.bind(job.wanted).bind(job.turn);
 }
 
 JobState read_state(Statement& row) {
@@ -116,6 +116,7 @@ JobRecord read_job(Statement& row) {
   job.doubt = row.text();
   job.deleted_s = row.real();
   job.wanted = row.text();
+  job.turn = row.integer();
   return job;
 }
 

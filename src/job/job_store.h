@@ -46,6 +46,7 @@ struct JobRecord {
   std::string tray_files;  // what the printer is given of each tray, and the SHA-256 of its bytes
                            // when it was prepared, JSON text; empty: not known
   std::string wanted;      // the variant that somebody asked for; empty: as the settings say
+  std::int64_t turn = 0;   // those with more go first, 0: in the order in which they came
   std::string variant;     // what was prepared: packed, hollow, solid, or program: as it came
   bool pays = false;       // nothing speaks against printing what was prepared
   std::string doubt;       // what speaks against it; one sentence

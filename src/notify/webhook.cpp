@@ -73,11 +73,12 @@ struct Webhook::Courier {
   // Empty: it was taken. Otherwise why not, and whether to try again.
   struct Outcome {
     std::string why;
+    std::string kind;  // without what differs from one attempt to the next
     bool again = false;
   };
 
   Outcome bring(const Letter& letter, const Webhook& hook) {
-    if (curl == nullptr) return {"out of memory", true};
+    if (curl == nullptr) return {"out of memory", "out of memory", true};
     curl_slist* list = nullptr;
     const auto add = [&](const std::string& line) { list = curl_slist_append(list, line.c_str()); };
     add("Content-Type: application/json");
@@ -111,8 +112,10 @@ struct Webhook::Courier {
     curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
     const bool is_whole = code == CURLE_OK || code == CURLE_WRITE_ERROR;  // a long answer is one
     if (is_whole && status >= 200 && status < 300) return {};
-    if (is_whole) return {"HTTP " + std::to_string(status), may_pass(status)};
-    return {trouble[0] != 0 ? trouble.data() : curl_easy_strerror(code), true};
+    const std::string refused = "HTTP " + std::to_string(status);
+    if (is_whole) return {refused, refused, may_pass(status)};
+    const std::string kind = curl_easy_strerror(code);
+    return {trouble[0] != 0 ? trouble.data() : kind, kind, true};
   }
 };
 
@@ -133,7 +136,7 @@ void Webhook::run() {
   Courier courier;
   std::deque<Letter> waiting;
   double next_s = 0;
-  std::string told;  // why it takes nothing; empty: it does
+  std::string told;  // the kind of what was told last; empty: it takes messages
   const auto give_up = [&](const std::string& why) {
     dead_.keep(settings_.url, why, waiting.front().body);
     waiting.pop_front();
@@ -157,7 +160,7 @@ void Webhook::run() {
       waiting.pop_front();
       continue;
     }
-    if (std::exchange(told, outcome.why) != outcome.why)
+    if (std::exchange(told, outcome.kind) != outcome.kind)
       tell_("webhook " + settings_.url + ": " + outcome.why);
     next_s = now_s() + limits_.first_retry_s * (1 << letter.tries);
     if (++letter.tries < limits_.tries && outcome.again) continue;

@@ -88,9 +88,10 @@ void request(std::string_view text) {
 
 // A request whose verb is known, so that what it needs is read.
 void known_request(std::string_view text) {
-  constexpr std::array<std::string_view, 10> kVerbs = {
-      "jobs.list",     "jobs.show",      "jobs.approve",   "jobs.hold",       "jobs.cancel",
-      "printers.list", "printers.clear", "printers.pause", "printers.answer", "printers.stop"};
+  constexpr std::array<std::string_view, 11> kVerbs = {
+      "jobs.list",      "jobs.show",       "jobs.approve",  "jobs.hold",
+      "jobs.first",     "jobs.cancel",     "printers.list", "printers.clear",
+      "printers.pause", "printers.answer", "printers.stop"};
   if (text.empty()) return;
   const std::size_t verb = static_cast<std::uint8_t>(text[0]) % kVerbs.size();
   request("{\"verb\": \"" + std::string(kVerbs[verb]) + "\", " + std::string(text.substr(1)));

@@ -57,7 +57,7 @@ export const showJob = (id: number): Promise<Job> => json(`jobs/${id}`);
 export const jobsBefore = (id: number, limit: number): Promise<Job[]> => json(`jobs?before=${id}&limit=${limit}`);
 export const uploadRules = (): Promise<UploadRules> => json('uploads');
 
-export type JobVerb = 'approve' | 'hold' | 'cancel' | 'again' | 'delete';
+export type JobVerb = 'approve' | 'hold' | 'first' | 'cancel' | 'again' | 'delete';
 // starts: the job that this may start at once, 0 for none; refused where it would start another.
 export const changeJob = (id: number, verb: JobVerb, starts: number): Promise<Job> =>
   json(`jobs/${id}/${verb}?starts=${starts}`, { method: 'POST' });

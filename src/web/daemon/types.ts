@@ -72,6 +72,7 @@ export interface Job {
   name: string;
   state: JobState;
   held: boolean;
+  turn: number;
   waits_for: Waits | null;
   status: string;
   progress: (Partial<Print> & { stage: string; fraction: number }) | null;

@@ -15,6 +15,7 @@ export function deedsFor(job: Job): Deed[] {
   if (job.waits_for === 'paused') deeds.push('resume');
   if (job.state === 'ready' || job.held) deeds.push('approve');
   if (job.state !== 'sending' && job.state !== 'claiming' && !job.held) deeds.push('hold');
+  if (job.state === 'received' || (job.state === 'approved' && !job.held)) deeds.push('first');
   if (job.state !== 'claiming') deeds.push('cancel');
   return deeds;
 }
@@ -52,6 +53,8 @@ function DeedButton({ deed, job, first }: { deed: Deed; job: Job; first: boolean
     }
     case 'hold':
       return <Button icon="hold" label={`Hold ${about}`} onClick={change('hold', `Job ${job.id} is held`)}>Hold</Button>;
+    case 'first':
+      return <Button icon="first" label={`Put first: ${about}`} onClick={change('first', `Job ${job.id} goes first`)}>Put first</Button>;
     case 'cancel':
       return <Button icon="close" kind="danger" label={`Cancel ${about}`} onClick={() => askToCancel(job)}>Cancel</Button>;
     case 'again':

@@ -67,7 +67,7 @@ class RandomLife {
 
   void ask() {
     static const char* const kVerbs[] = {"jobs.approve", "jobs.hold",    "jobs.cancel",
-                                         "jobs.again",   "jobs.approve", "jobs.approve"};
+                                         "jobs.again",   "jobs.approve", "jobs.first"};
     const auto id = static_cast<std::int64_t>(random_.below(8) + 1);
     shop_.ask({{"verb", kVerbs[random_.below(6)]}, {"id", id}});
   }

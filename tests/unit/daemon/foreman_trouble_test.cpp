@@ -44,6 +44,10 @@ TEST_F(Trouble, APrinterThatCannotBeReachedIsToldOnce) {
   fail("another printer is there");
   fail("another printer is there");
   EXPECT_EQ(times(shop_.log_, "another printer is there"), 1) << "it changed";
+  SendProgress waiting = progress_of(1, PrintState::kWaiting);
+  waiting.report.done = 0;
+  shop_.tell(waiting);
+  EXPECT_EQ(times(shop_.log_, "started after all"), 0) << "nothing was sent yet";
   shop_.tell(progress_of(1, PrintState::kPrinting));
   EXPECT_EQ(times(shop_.log_, "started after all"), 1) << "it is over";
   EXPECT_EQ(shop_.view(1).at("status"), "printing 50 %");

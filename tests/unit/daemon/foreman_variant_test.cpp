@@ -93,6 +93,37 @@ TEST(Variant, AnEndedJobBecomesANewOne) {
   EXPECT_THAT(shop.prepare_order()->argv, Contains("solid"));
 }
 
+TEST(Variant, WhatIsHeldStaysHeldInTheNewJob) {
+  Workshop shop;
+  shop.config_.printers[2].approve = Approve::kAsk;
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order(), 1, false);
+  shop.foreman_->cancel(1);
+  shop.foreman_->advance(shop.now_s_);
+  shop.run_the_clerk();
+  shop.foreman_->again(1);
+  shop.foreman_->hold(2);
+  EXPECT_TRUE(shop.ask(wanted(2, "solid")).at("ok"));
+  EXPECT_TRUE(shop.job(3).held);
+}
+
+TEST(Variant, WhatKeptTheOldWayFromPrintingIsForgotten) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.prepare(*shop.prepare_order());
+  ASSERT_TRUE(shop.send_order("sim"));
+  SendEnded ended;
+  ended.job = 1;
+  ended.outcome = SendOutcome::kNotStarted;
+  ended.failure = {Fault::kUnavailable, "nobody answers", "switch it on"};
+  shop.tell(ended);
+  EXPECT_TRUE(shop.ask(wanted(1, "solid")).at("ok"));
+  EXPECT_EQ(shop.view(1).at("hint"), "");
+  shop.foreman_->advance(shop.now_s_);
+  shop.prepare(*shop.prepare_order());
+  EXPECT_TRUE(shop.send_order("sim")) << "at once";
+}
+
 TEST(Variant, IsRefusedWhereItMakesNoSense) {
   Workshop shop;
   shop.drop("sim", "a.stl");
@@ -105,6 +136,9 @@ TEST(Variant, IsRefusedWhereItMakesNoSense) {
   EXPECT_EQ(shop.ask(wanted(1, "hollow")).at("error").at("fault"), 2) << "it is printed";
   shop.drop("sim", "b.gcode");
   EXPECT_EQ(shop.ask(wanted(2, "hollow")).at("error").at("fault"), 2) << "a program";
+  shop.drop("real", "c.stl");
+  shop.config_.printers.erase(shop.config_.printers.begin() + 1);
+  EXPECT_EQ(shop.ask(wanted(3, "hollow")).at("error").at("fault"), 66) << "its printer is gone";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -143,7 +144,8 @@ TEST(Doubt, SaysWhatWasComparedAndChosen) {
       R"({"packed": {"fits": false}, "hollow": {"fits": true, "time_s": 1, "cost": 5}})";
   EXPECT_EQ(doubt_about(job), "") << "it could not be packed";
   job.variant = "packed";
-  job.estimates = R"({"packed": {"fits": true, "time_s": 9, "cost": 4, "parts": 3, "material_cost": 4},
+  job.estimates =
+      R"({"packed": {"fits": true, "time_s": 9, "cost": 4, "parts": 3, "material_cost": 4},
                       "hollow": {"fits": true, "time_s": 5, "cost": 5, "material_cost": 5}})";
   EXPECT_EQ(doubt_about(job), "packing does not pay: printed hollow it takes less time");
   job.variant = "hollow";
@@ -161,7 +163,11 @@ TEST(HandOver, PutsTheDocumentReportAndPictureWhole) {
   EXPECT_EQ(fault_of([&] { hand_over(folder.path() / "job", to, "bunny-1"); }),
             Fault::kCannotWrite);
   fs::create_directory(to);
+  const mode_t umask_before = ::umask(0077);
   const fs::path target = hand_over(folder.path() / "job", to, "bunny-1");
+  ::umask(umask_before);
+  EXPECT_EQ(fs::status(target).permissions(), fs::perms{0755}) << "another user takes it";
+  EXPECT_EQ(fs::status(target / "job.json").permissions(), fs::perms{0644});
   EXPECT_EQ(target, to / "bunny-1");
   for (const char* name : {"job.json", "preview.png", "tray.stl", "tray-2.stl"})
     EXPECT_EQ(read_file(target / name, 9999), read_file(folder.path() / "job" / name, 9999));
@@ -178,7 +184,16 @@ TEST(HandOver, AFailureLeavesNothingBehind) {
   make_job(folder.path() / "job", "objet30");
   fs::remove(folder.path() / "job/tray-2.stl");
   fs::create_directory(folder.path() / "share");
-  EXPECT_ANY_THROW(hand_over(folder.path() / "job", folder.path() / "share", "x"));
+  const auto told = [&] {
+    try {
+      hand_over(folder.path() / "job", folder.path() / "share", "x");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(told(), "");
+  EXPECT_EQ(told(), told()) << "so that it is one line in the log";
   EXPECT_TRUE(fs::is_empty(folder.path() / "share"));
 }
 

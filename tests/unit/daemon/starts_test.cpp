@@ -115,6 +115,14 @@ TEST_F(Starts, AgainStartsWhatWasApprovedAndNothingElse) {
   EXPECT_EQ(does_start(of_job("again", 3), "sim", 3), 4);
 }
 
+TEST_F(Starts, WhatWasPutFirstStartsFirst) {
+  ready("real");
+  ready("real");
+  shop_.foreman_->put_first(3);
+  EXPECT_EQ(starts(at("clear", "real")), 3);
+  EXPECT_EQ(does_start(at("clear", "real"), "real", 3), 3);
+}
+
 TEST_F(Starts, LaterTraysGoBeforeOtherJobs) {
   shop_.foreman_->cancel(1);
   ready("real");

@@ -35,6 +35,11 @@ TEST_P(StateFolder, ANewOneIsItsOwners) {
   EXPECT_TRUE(furnish_state_folder(state_).empty()) << "a second start finds nothing to tell";
 }
 
+TEST_P(StateFolder, ItMayBeNamedWithASlash) {
+  EXPECT_TRUE(furnish_state_folder(state_ / "").empty());
+  EXPECT_EQ(mode(state_), kOwner);
+}
+
 TEST_P(StateFolder, AnEarlierOneIsClosedAndTold) {
   fs::create_directories(state_ / "jobs/1");
   write_file_whole(state_ / "keys.json", "[]");

@@ -291,6 +291,11 @@ TEST(WebEvents, AnIdOfAnotherDaemonOrOfNobodyBeginsWithTheState) {
   auto stream = events.changes("");
   look(events, "c", "3");
   const std::string own = told(stream()).at(0).id;
+  for (const std::string& id : {own.substr(0, own.rfind('.') + 1), own + "99999999999999999999"}) {
+    auto malformed = events.changes(id);
+    look(events, "c", "3");
+    EXPECT_EQ(told(malformed()).at(0).name, "state") << id;
+  }
   auto later = events.changes(own + "0");
   look(events, "d", "4");
   EXPECT_EQ(told(later()).at(0).name, "state") << "a number that was not reached yet";

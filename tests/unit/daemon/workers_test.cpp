@@ -43,6 +43,24 @@ TEST(Workers, AreGivenNoMoreThanTheyBeginAtOnce) {
   EXPECT_EQ(shop.prepare_order().value().job, 4);
 }
 
+TEST(Workers, BeginWithWhatWasPutFirst) {
+  Workshop shop;
+  shop.config_.prepare.workers = 1;
+  for (const char* name : {"a.stl", "b.stl", "c.stl", "d.stl"}) shop.drop("sim", name);
+  shop.prepare(*shop.prepare_order());  // job 1 was begun as it came
+  for (const int id : {3, 4, 3})
+    EXPECT_TRUE(shop.ask({{"verb", "jobs.first"}, {"id", id}}).at("ok"));
+  EXPECT_EQ(shop.view(3).at("turn"), 3);
+  const auto order = shop.prepare_order();
+  EXPECT_EQ(order.value().job, 2) << "that was begun already";
+  shop.prepare(*order);
+  shop.start();  // it outlives the daemon
+  EXPECT_EQ(shop.prepare_order().value().job, 3);
+  EXPECT_EQ(shop.ask({{"verb", "jobs.first"}, {"id", 9}}).at("error").at("fault"), 66);
+  shop.foreman_->cancel(4);
+  EXPECT_EQ(shop.ask({{"verb", "jobs.first"}, {"id", 4}}).at("error").at("fault"), 2) << "it ended";
+}
+
 TEST(Workers, AfterAKillAllThatWereBeingPreparedAreBegunAgain) {
   Workshop shop;
   shop.config_.prepare.workers = 2;

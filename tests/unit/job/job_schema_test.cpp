@@ -9,7 +9,8 @@ namespace packmerger {
 namespace {
 
 constexpr const char* kDropSinceVersion7 =
-    "ALTER TABLE job DROP COLUMN wanted; DROP INDEX job_folder; ALTER TABLE job DROP COLUMN "
+    "ALTER TABLE job DROP COLUMN turn; ALTER TABLE job DROP COLUMN wanted; DROP INDEX job_folder; "
+    "ALTER TABLE job DROP COLUMN "
     "deleted_s; DROP TABLE memory;"
     "DROP INDEX job_ended; ALTER TABLE job DROP COLUMN approved; ALTER TABLE job DROP COLUMN "
     "doubt;";

@@ -91,6 +91,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
     job.doubt = "doubt";
     job.deleted_s = 4.5;
     job.wanted = "hollow";
+    job.turn = 7;
     store.save(job, "note");
   }
   JobStore store(folder.path() / "jobs.sqlite");
@@ -122,6 +123,7 @@ TEST(JobStore, KeepsEveryFieldAcrossReopening) {
   EXPECT_EQ(back.doubt, "doubt");
   EXPECT_EQ(back.deleted_s, 4.5);
   EXPECT_EQ(back.wanted, "hollow");
+  EXPECT_EQ(back.turn, 7);
   const std::vector<JobEvent> history = store.history(job.id);
   ASSERT_EQ(history.size(), 2U);
   EXPECT_EQ(history.back().note, "note");
