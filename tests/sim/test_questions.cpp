@@ -99,5 +99,29 @@ TEST_F(Questions, WhatABusyPrinterDoesNotReadDoesNotPileUp) {
       });
 }
 
+// An hour passes in a pause before the printer says for the first time that it is busy.
+TEST_F(Questions, DoNotMakeASilentPrinterSeemAliveForHours) {
+  constexpr double kDies_s = kAnswered_s + 600;
+  int step = 0;
+  const auto at = [&](double seconds, int number) {
+    return port.now_s() > seconds && step == number && ++step != 0;
+  };
+  port.on_step = [&](std::size_t) {
+    if (at(kAsks_s, 0)) control.pause();
+    if (at(kAnswered_s, 1)) firmware.run_out();
+    if (at(kAnswered_s + 60, 2)) control.answer(0);
+    if (at(kAnswered_s + 120, 3)) control.resume();
+    if (at(kDies_s, 4)) port.lose_answers = true;
+  };
+  program = gcode_program(30000);
+  const auto failure =
+      test::print(port, true, joined(program), control, [&](const PrintReport& report) {
+        if (report.text == "Paused") control.answer(1);
+      });
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(step, 5);
+  EXPECT_LT(port.now_s(), kDies_s + 1800);
+}
+
 }  // namespace
 }  // namespace packmerger::test

@@ -97,6 +97,7 @@ TEST_F(ConfinementTest, SeccompRefusesWhatLandlockDoesNotKnow) {
         "libc.fchmod(os.open('own', os.O_RDONLY), 0o777)", "libc.fchmodat(-100, b'own', 0o777, 0)",
         "libc.syscall(452, -100, b'own', 0o777, 0)", "libc.chown(b'own', -1, -1)",
         "libc.utimes(b'own', None)", "libc.setxattr(b'own', b'user.a', b'b', 1, 0)",
+        "libc.ioctl(os.open('../outside', os.O_RDONLY), 0x40086602, struct.pack('l', 0x80))",
         "libc.removexattr(b'own', b'user.a')", "libc.syscall(425, 8, bytes(120))"})
     EXPECT_TRUE(refused(attempt)) << attempt;
 }
@@ -125,7 +126,7 @@ TEST_F(ConfinementTest, NobodyOutsideIsSignalled) {
         "libc.syscall(424, os.open('/proc/PID', os.O_RDONLY), 9, 0, 0)", "libc.fcntl(0, 8, PID)",
         "libc.fcntl(0, 10, 9)", "libc.fcntl(0, 15, struct.pack('ii', 1, PID))",
         "libc.prlimit(PID, 0, struct.pack('QQ', 0, 0), None)", "libc.setpriority(0, PID, 19)",
-        "libc.sched_setaffinity(PID, 8, struct.pack('Q', 1))"})
+        "libc.syscall(251, 1, PID, 0x6000)", "libc.sched_setaffinity(PID, 8, struct.pack('Q', 1))"})
     EXPECT_TRUE(refused(std::regex_replace(std::string(attempt), std::regex("PID"), pid)))
         << attempt;
   EXPECT_FALSE(python("import os; os.setpgid(0, os.getpgid(" + pid + "))"))
