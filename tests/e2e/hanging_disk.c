@@ -4,6 +4,7 @@
  *   HANGING_DISK       the folders, separated by ":"
  *   HANGING_DISK_WHEN  the file
  *   HANGING_DISK_TOLD  a file that gets one byte for each call that waits
+ *   HANGING_DISK_ONLY  the one call that waits; where it is not set, all do
  */
 #include "real_call.h"
 
@@ -30,9 +31,14 @@ static int hangs(void) {
   return when != NULL && syscall(SYS_faccessat, AT_FDCWD, when, F_OK) == 0;
 }
 
-static void wait_at_path(const char* path) {
+static int is_meant(const char* call) {
+  const char* only = getenv("HANGING_DISK_ONLY");
+  return only == NULL || only[0] == 0 || strcmp(only, call) == 0;
+}
+
+static void wait_at_path(const char* call, const char* path) {
   const int before = errno;
-  if (lies_below(path) && hangs()) {
+  if (is_meant(call) && lies_below(path) && hangs()) {
     tell_test("HANGING_DISK_TOLD");
     const struct timespec pause = {0, 10 * 1000 * 1000};
     while (hangs()) nanosleep(&pause, NULL);
@@ -40,14 +46,14 @@ static void wait_at_path(const char* path) {
   errno = before;
 }
 
-static void wait_at_fd(int fd) {
+static void wait_at_fd(const char* call, int fd) {
   char path[PATH_MAX];
-  if (find_path(fd, path)) wait_at_path(path);
+  if (find_path(fd, path)) wait_at_path(call, path);
 }
 
 #define AT_PATH(type, name, parameters, path, ...) \
   type name parameters {                           \
-    wait_at_path(path);                            \
+    wait_at_path(#name, path);                     \
     return REAL(name)(__VA_ARGS__);                \
   }
 
@@ -65,40 +71,40 @@ AT_PATH(FILE*, fopen, (const char* path, const char* mode), path, path, mode)
 AT_PATH(FILE*, fopen64, (const char* path, const char* mode), path, path, mode)
 
 struct dirent* readdir(DIR* folder) {
-  wait_at_fd(dirfd(folder));
+  wait_at_fd("readdir", dirfd(folder));
   return REAL(readdir)(folder);
 }
 struct dirent64* readdir64(DIR* folder) {
-  wait_at_fd(dirfd(folder));
+  wait_at_fd("readdir64", dirfd(folder));
   return REAL(readdir64)(folder);
 }
 ssize_t read(int fd, void* data, size_t size) {
-  wait_at_fd(fd);
+  wait_at_fd("read", fd);
   return REAL(read)(fd, data, size);
 }
 int rename(const char* from, const char* to) {
-  wait_at_path(from);
-  wait_at_path(to);
+  wait_at_path("rename", from);
+  wait_at_path("rename", to);
   return REAL(rename)(from, to);
 }
 int renameat2(int at, const char* from, int to_at, const char* to, unsigned flags) {
-  wait_at_path(from);
-  wait_at_path(to);
+  wait_at_path("renameat2", from);
+  wait_at_path("renameat2", to);
   return REAL(renameat2)(at, from, to_at, to, flags);
 }
 
 int open(const char* path, int flags, ...) {
   MODE_OF(flags)
-  wait_at_path(path);
+  wait_at_path("open", path);
   return REAL(open)(path, flags, mode);
 }
 int open64(const char* path, int flags, ...) {
   MODE_OF(flags)
-  wait_at_path(path);
+  wait_at_path("open64", path);
   return REAL(open64)(path, flags, mode);
 }
 int openat(int at, const char* path, int flags, ...) {
   MODE_OF(flags)
-  wait_at_path(path);
+  wait_at_path("openat", path);
   return REAL(openat)(at, path, flags, mode);
 }

@@ -31,8 +31,10 @@ def free_port():
         return one.getsockname()[1]
 
 
-class HangingDisk(unittest.TestCase):
+class Case(unittest.TestCase):
     """m0's folder and the hand-over folder lie on shares; m1's does not."""
+
+    ONLY = ""  # the one call that hangs
 
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="packmerger-hanging-")
@@ -46,7 +48,8 @@ class HangingDisk(unittest.TestCase):
         self.shop = Workshop(self, self.folder, speed="20", settings=SETTINGS + f"[web]\nport = {self.port}\n"
                              + HANDS_OVER.format(share=self.share), environment={
             "LD_PRELOAD": program.binary("libhanging_disk.so"), "HANGING_DISK": ":".join(map(str, shares)),
-            "HANGING_DISK_WHEN": str(self.when), "HANGING_DISK_TOLD": str(self.told)})
+            "HANGING_DISK_WHEN": str(self.when), "HANGING_DISK_TOLD": str(self.told),
+            "HANGING_DISK_ONLY": self.ONLY})
         self.addCleanup(lambda: self.when.unlink(missing_ok=True))
 
     def hang(self):
@@ -60,6 +63,21 @@ class HangingDisk(unittest.TestCase):
     def state_of(self, mark):
         return {job["name"]: job["state"] for job in self.shop.jobs()}.get(f"{mark}.gcode")
 
+    def check_that_a_hand_over_keeps_nobody(self):
+        """While objet's cube is being handed over, and hangs."""
+        shop = self.shop
+        shop.drop("m1", "next.gcode", gcode("next"))
+        shop.wait_for(lambda: self.state_of("next") == "done")
+        shop.daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(shop.daemon.wait(timeout=10 * ENDS_S), 0, shop.log())
+        self.when.unlink()
+        shop.start()
+        shop.wait_for(lambda: [job["state"] for job in shop.jobs() if job["name"] == "cube.stl"] == ["handed_over"])
+        self.assertEqual(len(list(self.share.glob("cube-*/job.json"))), 1)
+        self.assertEqual(shop.end(), 0)
+
+
+class HangingDisk(Case):
     def test_others_go_on(self):
         shop = self.shop
         shop.start()
@@ -111,15 +129,22 @@ class HangingDisk(unittest.TestCase):
         self.hang()
         shop.drop("objet", "cube.stl", CUBE)
         shop.wait_for(lambda: any(job["state"] == "sending" for job in shop.jobs()))
-        shop.drop("m1", "next.gcode", gcode("next"))
-        shop.wait_for(lambda: self.state_of("next") == "done")
-        shop.daemon.send_signal(signal.SIGTERM)
-        self.assertEqual(shop.daemon.wait(timeout=10 * ENDS_S), 0, shop.log())
-        self.when.unlink()
+        self.check_that_a_hand_over_keeps_nobody()
+
+
+class HangsInTheMiddle(Case):
+    """The server dies once the hand-over has looked at its folder."""
+
+    ONLY = "mkdir"
+
+    def test_a_hand_over_folder_keeps_nobody(self):
+        shop = self.shop
         shop.start()
-        shop.wait_for(lambda: [job["state"] for job in shop.jobs() if job["name"] == "cube.stl"] == ["handed_over"])
-        self.assertEqual(len(list(self.share.glob("cube-*/job.json"))), 1)
-        self.assertEqual(shop.end(), 0)
+        shop.wait_for(lambda: (self.folder / "state/folders/m0").is_dir())
+        self.when.write_text("")
+        shop.drop("objet", "cube.stl", CUBE)
+        shop.wait_for(lambda: self.told.exists() and self.told.stat().st_size > 0)
+        self.check_that_a_hand_over_keeps_nobody()
 
 
 def cube():
