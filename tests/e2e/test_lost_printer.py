@@ -71,7 +71,7 @@ class LostPrinter(unittest.TestCase):
         (folder / "job.json").write_text(json.dumps(
             {"version": 1, "variant": "packed", "inputs": [{"file": "a.stl", "sha256": hashlib.sha256(MODEL).hexdigest(),
                                                              "scale": 1}],
-             "parts": [{"id": 1, "tray": 1}], "estimates": {"packed": {"fits": True, "cost": 1}}}))
+             "parts": [{"id": 1, "tray": 1}], "estimates": {"packed": {"fits": True, "time_s": 60, "cost": 1}}}))
         if profile == "marlin":
             (folder / "program.gcode").write_text(gcode())
         else:
