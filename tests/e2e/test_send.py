@@ -130,6 +130,14 @@ class Sending(unittest.TestCase):
         printer = StuckPrinter(self)
         return printer, write_job(self.folder / "job", ["M140 S60", "M190 S60", *moves(10)])
 
+    def stuck_without_a_terminal(self):
+        printer, job = self.stuck()
+        errors = self.folder / "errors.txt"
+        with open(errors, "wb") as stderr:
+            child = self.start(["send", job, "--port", printer.name], stdin=subprocess.DEVNULL, stderr=stderr)
+        self.wait_for(lambda: b"M190" in printer.heard, "it heats")
+        return printer, child, errors
+
     def expect_left(self, child, begun, told):
         self.wait_for(lambda: child.poll() is not None, "it ends")
         self.assertLess(time.monotonic() - begun, LEAVES_S, "a cancel would wait for the printer")
@@ -137,11 +145,7 @@ class Sending(unittest.TestCase):
         self.assertIn("heaters may be on", told())
 
     def test_two_interrupts_write_the_safe_text_and_wait_for_nothing(self):
-        printer, job = self.stuck()
-        errors = self.folder / "errors.txt"
-        with open(errors, "wb") as stderr:
-            child = self.start(["send", job, "--port", printer.name], stdin=subprocess.DEVNULL, stderr=stderr)
-        self.wait_for(lambda: b"M190" in printer.heard, "it heats")
+        printer, child, errors = self.stuck_without_a_terminal()
         begun = time.monotonic()
         child.send_signal(signal.SIGINT)
         self.wait_for(lambda: b"M108" in printer.heard, "it cancels")
@@ -164,11 +168,7 @@ class Sending(unittest.TestCase):
         self.wait_for(lambda: SAFE in printer.heard, "the safe text")
 
     def test_a_port_that_takes_nothing_is_left_and_told(self):
-        printer, job = self.stuck()
-        errors = self.folder / "errors.txt"
-        with open(errors, "wb") as stderr:
-            child = self.start(["send", job, "--port", printer.name], stdin=subprocess.DEVNULL, stderr=stderr)
-        self.wait_for(lambda: b"M190" in printer.heard, "it heats")
+        printer, child, errors = self.stuck_without_a_terminal()
         termios.tcflow(printer.slave, termios.TCOOFF)
         begun = time.monotonic()
         child.send_signal(signal.SIGINT)

@@ -1,7 +1,7 @@
 // The printer says whatever the fuzzer likes, in simulated time: a print ends, done or with an
 // Error, in bounded time and with bounded output, and sends nothing but what turns the heaters off
-// once the printer has halted. tests/fuzz/seeds/conversation holds what firmwares say, one reply a line:
-// its blank says after what time, and that nothing is put before it.
+// once the printer has halted. tests/fuzz/seeds/conversation holds what firmwares say, one reply a
+// line: its blank says after what time, and that nothing is put before it.
 #include <algorithm>
 #include <array>
 #include <cstddef>
