@@ -95,8 +95,10 @@ std::string told(const Parts3mf& parts) {
 
 void check(const TriangleSoup& soup) {
   if (soup.triangles.empty())
-    throw Error(Fault::kBadInput, "The model file holds no triangles",
-                "Export the model as a mesh, for example as STL or 3MF.");
+    throw Error(Fault::kBadInput,
+                soup.points.empty() ? "The model file holds no triangles"
+                                    : "The model file holds points, but no triangles",
+                kExport);
   for (const Vec3& point : soup.points) {
     if (!point.allFinite()) refuse_file("it holds coordinates that are not finite numbers");
     if (point.cwiseAbs().maxCoeff() > kMaxCoordinate)

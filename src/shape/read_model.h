@@ -38,7 +38,7 @@ struct ModelFile {
 // Nothing in the file is trusted: counts are checked against the bytes that are there before
 // memory is taken. Limits: 1 GiB a file; 512 MiB, and 200 times the archive's size, what is read of
 // a 3MF once inflated; 30 million triangles after polygons are cut and components are repeated; 64
-// levels of components; coordinates up to 1e9. Memory stays below 64 times the file's size (for
+// levels of components; coordinates up to 1e9. Memory stays below 100 times the file's size (for
 // 3MF, of the inflated part) plus the returned soup.
 //
 // bytes: what the file at path holds; errors name the file. Throws Error: kBadInput (unknown

@@ -1,4 +1,7 @@
-// Wavefront OBJ: the points and faces of all groups; everything else in it does not concern shape.
+// Wavefront OBJ: the points and faces of all groups. Free-form surfaces are refused by name;
+// everything else in it does not concern shape.
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +41,15 @@ std::optional<std::string_view> next_statement(LineReader& lines, std::string& j
   return joined;
 }
 
+void refuse_free_form(std::string_view key, int line) {
+  constexpr std::array<std::string_view, 4> kPatches = {"surf", "bzp", "bsp", "cdp"};
+  if (std::find(kPatches.begin(), kPatches.end(), key) == kPatches.end()) return;
+  throw Error(Fault::kBadInput,
+              "The model file holds free-form surfaces (line " + std::to_string(line) +
+                  "), which are not supported",
+              "Export the model as a mesh, for example as STL or 3MF.");
+}
+
 }  // namespace
 
 TriangleSoup read_obj(std::string_view bytes, const Progress& progress) {
@@ -49,8 +61,9 @@ TriangleSoup read_obj(std::string_view bytes, const Progress& progress) {
     if (lines.line_number() % kCheckEvery == 0) progress.check();
     std::string_view text = *line;
     const std::string_view key = take_word(text);
+    refuse_free_form(key, lines.line_number());
     if (key == "v") soup.add_point(take_point(text, lines.line_number()));
-    if (key != "f") continue;
+    if (key != "f" && key != "fo") continue;  // fo: a face's outline, before version 3
     face.clear();
     for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
       face.push_back(point_index(word, soup.point_count(), lines.line_number()));

@@ -1,5 +1,5 @@
-// OFF in ASCII, with or without the colours and normals of its variants (COFF, NOFF, CNOFF, STOFF).
-#include <algorithm>
+// OFF in ASCII, with or without the colours, normals and texture of its variants (STCNOFF and
+// less).
 #include <vector>
 
 #include "base/error.h"
@@ -28,7 +28,13 @@ TriangleSoup read_off(std::string_view bytes, const Progress& progress) {
   LineReader lines(bytes);
   std::string_view text = next_line(lines);
   std::string_view after_word = text;
-  if (take_word(after_word).ends_with("OFF")) text = after_word;
+  if (const std::string_view word = take_word(after_word); word.ends_with("OFF")) {
+    if (word.find_first_not_of("STCNOF") != word.npos)
+      throw Error(Fault::kBadInput,
+                  "OFF files whose points have other than three coordinates are not supported",
+                  "Export the model as OFF, STL or 3MF.");
+    text = after_word;
+  }
   if (std::string_view peek = text; take_word(peek) == "BINARY")
     throw Error(Fault::kBadInput, "Binary OFF files are not supported",
                 "Export the model as ASCII OFF, STL or 3MF.");

@@ -1,14 +1,16 @@
-// PLY: ASCII, binary little and big endian. Elements other than "vertex" and "face" are skipped.
+// PLY: ASCII, binary little and big endian. Elements other than "vertex", "face" and "tristrips"
+// are skipped; a scan's range grid, which gives points and no surface, is refused by name.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <utility>
+#include <limits>
 #include <vector>
 
 #include "base/error.h"
 #include "shape/formats.h"
+#include "shape/ply_header.h"
 
 namespace packmerger {
 namespace {
@@ -16,107 +18,15 @@ namespace {
 constexpr std::int64_t kCheckEvery = 1 << 16;
 constexpr std::int64_t kMaxListLength = 1 << 24;
 
-enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
-std::optional<Type> type_named(std::string_view name) {
-  static constexpr std::array<std::pair<std::string_view, Type>, 16> kNames = {{
-      {"char", Type::kInt8},
-      {"int8", Type::kInt8},
-      {"uchar", Type::kUint8},
-      {"uint8", Type::kUint8},
-      {"short", Type::kInt16},
-      {"int16", Type::kInt16},
-      {"ushort", Type::kUint16},
-      {"uint16", Type::kUint16},
-      {"int", Type::kInt32},
-      {"int32", Type::kInt32},
-      {"uint", Type::kUint32},
-      {"uint32", Type::kUint32},
-      {"float", Type::kFloat},
-      {"float32", Type::kFloat},
-      {"double", Type::kDouble},
-      {"float64", Type::kDouble},
-  }};
-  for (const auto& [known, type] : kNames)
-    if (known == name) return type;
-  return std::nullopt;
-}
+using ply::Coding;
+using ply::Element;
+using ply::Header;
+using ply::Property;
+using ply::Type;
 
 std::size_t size_of(Type type) {
   static constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
   return kSizes[static_cast<std::size_t>(type)];
-}
-
-struct Property {
-  std::string_view name;
-  Type type = Type::kFloat;
-  std::optional<Type> length_type;  // of a list
-};
-
-struct Element {
-  std::string_view name;
-  std::int64_t count = 0;
-  std::vector<Property> properties;
-};
-
-enum class Coding { kAscii, kLittle, kBig };
-
-struct Header {
-  Coding coding = Coding::kAscii;
-  std::vector<Element> elements;
-  std::string_view body;
-};
-
-Type take_type(std::string_view& text, int line) {
-  const auto type = type_named(take_word(text));
-  if (!type) refuse_file("an unknown type in line " + std::to_string(line) + " of its header");
-  return *type;
-}
-
-Property read_property(std::string_view text, int line) {
-  Property property;
-  std::string_view rest = text;
-  if (take_word(rest) == "list") {
-    property.length_type = take_type(rest, line);
-    text = rest;
-  }
-  property.type = take_type(text, line);
-  property.name = take_word(text);
-  return property;
-}
-
-Header read_header(std::string_view bytes) {
-  Header header;
-  LineReader lines(bytes);
-  bool has_format = false;
-  lines.next();  // "ply"
-  while (auto line = lines.next()) {
-    std::string_view text = *line;
-    const std::string_view key = take_word(text);
-    if (key == "end_header") {
-      if (!has_format) refuse_file("its header does not name a format");
-      header.body = lines.rest();
-      return header;
-    }
-    if (key == "format") {
-      const std::string_view name = take_word(text);
-      if (name != "ascii" && name != "binary_little_endian" && name != "binary_big_endian")
-        refuse_file("its header names an unknown format");
-      header.coding = name == "ascii"                  ? Coding::kAscii
-                      : name == "binary_little_endian" ? Coding::kLittle
-                                                       : Coding::kBig;
-      has_format = true;
-    } else if (key == "element") {
-      const std::string_view name = take_word(text);
-      const auto count = to_integer(take_word(text));
-      if (!count || *count < 0) refuse_file("an element's count is not a number");
-      header.elements.push_back({name, *count, {}});
-    } else if (key == "property") {
-      if (header.elements.empty()) refuse_file("a property stands before its element");
-      header.elements.back().properties.push_back(read_property(text, lines.line_number()));
-    }
-  }
-  refuse_file("its header does not end");
 }
 
 // Hands out the numbers of the body, one after the other.
@@ -212,37 +122,63 @@ void read_vertex(Body& body, const Element& element, SoupBuilder& soup) {
   soup.add_point(point);
 }
 
-void read_other(Body& body, const Element& element, std::vector<std::int64_t>* face) {
+// corners: where lists of points go; null for elements that are skipped.
+void read_other(Body& body, const Element& element, std::vector<std::int64_t>* corners) {
   for (const Property& property : element.properties) {
-    const bool is_face = property.name == "vertex_indices" || property.name == "vertex_index";
     if (!property.length_type)
       body.take(property.type);
     else
-      take_list(body, property, is_face ? face : nullptr);
+      take_list(body, property, property.names_points() ? corners : nullptr);
+  }
+}
+
+// Strips of triangles, ended by -1: each corner from the third on makes a triangle with the two
+// before it, and every other triangle is turned. A corner that is repeated makes none, but counts.
+void add_strips(const std::vector<std::int64_t>& corners, SoupBuilder& soup) {
+  constexpr std::int64_t kEnds = -1;
+  constexpr std::int64_t kEndsUnsigned = std::numeric_limits<std::uint32_t>::max();
+  std::array<std::int64_t, 3> triangle{};
+  int in_strip = 0;
+  for (const std::int64_t corner : corners) {
+    if (corner == kEnds || corner == kEndsUnsigned) {
+      in_strip = 0;
+      continue;
+    }
+    triangle = {triangle[1], triangle[2], corner};
+    if (++in_strip < 3) continue;
+    const auto& [a, b, c] = triangle;
+    if (a == b || b == c || c == a) continue;
+    const bool is_turned = in_strip % 2 == 0;
+    soup.add_polygon(is_turned ? std::array{b, a, c} : triangle);
   }
 }
 
 }  // namespace
 
 TriangleSoup read_ply(std::string_view bytes, const Progress& progress) {
-  const Header header = read_header(bytes);
+  const Header header = ply::read_header(bytes);
   Body body(header);
   SoupBuilder soup;
-  std::vector<std::int64_t> face;
+  std::vector<std::int64_t> corners;
   for (const Element& element : header.elements) {
     if (!body.could_hold(element))
       refuse_file("its header declares " + std::to_string(element.count) +
                   " elements, more than the file could hold");
     if (element.properties.empty()) continue;
+    const bool is_strips = element.name == "tristrips";
+    const bool is_face = element.name == "face";
     for (std::int64_t i = 0; i < element.count; ++i) {
       if (i % kCheckEvery == 0) progress.check();
-      face.clear();
       if (element.name == "vertex") {
         read_vertex(body, element, soup);
-      } else {
-        read_other(body, element, element.name == "face" ? &face : nullptr);
-        soup.add_polygon(face);
+        continue;
       }
+      corners.clear();
+      read_other(body, element, is_strips || is_face ? &corners : nullptr);
+      if (is_strips)
+        add_strips(corners, soup);
+      else
+        soup.add_polygon(corners);
     }
   }
   return soup.finish();

@@ -1,4 +1,5 @@
 // Any bytes, under any extension, give a sound model or Error{kBadInput}.
+// The first byte chooses the extension: 0 to 5 in the seeds.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -114,6 +114,22 @@ TEST(ReadModel, ObjLinesGoOnAfterABackslash) {
           << text << faces;
 }
 
+TEST(ReadModel, ObjFacesOfOldAndNoFreeFormSurfaces) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  EXPECT_EQ(read(points + "fo 1 2 3\n", "obj").soup.triangles.size(), 1u);
+  EXPECT_THAT(
+      refusal(points + "f 1 2 3\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 4 3\nend\n", "obj")
+          .what(),
+      HasSubstr("free-form surfaces (line 8)"));
+}
+
+TEST(ReadModel, OffOfThreeCoordinatesOnly) {
+  const std::string rest = "\n3 1 0\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n";
+  EXPECT_EQ(read("STCNOFF" + rest, "off").soup.triangles.size(), 1u);
+  for (const char* word : {"4OFF", "nOFF", "C4OFF"})
+    EXPECT_THAT(refusal(word + rest, "off").what(), HasSubstr("three coordinates"));
+}
+
 TEST(ReadModel, PassesOverAByteOrderMark) {
   const TriangleSoup cube = fixtures::cube(10);
   const std::string mark = "\xEF\xBB\xBF";
