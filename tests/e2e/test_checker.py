@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The checker's own tests: a good job folder passes, and every broken promise is found by the check meant for it."""
+import hashlib
 import pathlib
 import sys
 import tempfile
@@ -10,10 +11,11 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import synthetic
-from breaks import BREAKS, path_of_first
+from breaks import BREAKS, change_part, path_of_first, set_at
 from check_job import check
 from checker import figures, meshes, removal, separation, solids, triangles
 from checker.columns import Grid, intervals
+from checker.outside import outer_sheets
 from checker.tree import Tree
 from shapes import sphere
 
@@ -45,6 +47,39 @@ def _add_break(name, apply, expected):
 
 for _name, (_apply, _expected) in BREAKS.items():
     _add_break(_name, _apply, _expected)
+
+
+class OverlappingBodies(unittest.TestCase):
+    """The same job of a model of two boxes that overlap at 18 < x < 22: the sheets between them bound nothing."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="packmerger-check-")
+        self.addCleanup(self.folder.cleanup)
+        self.job, self.model = synthetic.write_job(self.folder.name)
+        boxes = [synthetic.polycube(xs, [0, 30], [0, 20], lambda i, j, k: True) for xs in ([0, 22], [18, 40])]
+        meshes.write_binary_stl(self.model, np.concatenate(boxes))
+        set_at("inputs", 0, "sha256", value=hashlib.sha256(self.model.read_bytes()).hexdigest())(self.job)
+
+    def failures(self):
+        return [row["check"] for row in check(self.job, [self.model]).failures()]
+
+    def test_a_good_job_passes(self):
+        self.assertEqual(self.failures(), [])
+
+    def test_finds_a_slot_along_a_sheet_that_bounds_nothing(self):
+        """In the floor of part 1 at x = 18, which is 23 on the tray."""
+        xs = [5, 8, 22.96, 23.04, 25]
+        slotted = synthetic.polycube(xs, [5, 8, 32, 35], [0, 3, 17, 20], lambda i, j, k: not (
+            i >= 1 and j == 1 and k == 1 or i == 2 and j == 1 and k == 0))
+        change_part(1, lambda _: slotted)(self.job)
+        self.assertIn("input 0: the parts' outer surface lies on the model", self.failures())
+
+    def test_finds_what_is_missing(self):
+        for name in ("a part too small", "a part missing from the assembly", "a transform off by 0.2 mm"):
+            with self.subTest(name):
+                self.setUp()
+                BREAKS[name][0](self.job)
+                self.assertTrue(any(BREAKS[name][1] in line for line in self.failures()))
 
 
 def random_triangles(random, count, size=1.0):
@@ -97,6 +132,16 @@ class Geometry(unittest.TestCase):
                                      lambda i, j, k: (i, j, k) != (1, 1, 1))
         points = np.array([[1.1, 5.3, 5.7], [20.1, 15.3, 10.7], [-1, 3, 3], [20.2, 15.3, 18.1]])
         self.assertEqual(Tree(corners).winding(points).tolist(), [1, 0, 0, 1])
+
+    def test_outer_sheets_are_those_of_the_united_bodies(self):
+        first = synthetic.polycube([0, 10], [0, 10], [0, 10], lambda i, j, k: True)
+        within = synthetic.polycube([2, 4], [2, 4], [2, 4], lambda i, j, k: True)
+        pin = synthetic.polycube([4.7, 5.3], [4.6, 5.4], [5, 13], lambda i, j, k: True)  # through a face's middle
+        cavity = synthetic.polycube([6, 9], [6, 9], [6, 9], lambda i, j, k: True)[:, ::-1]
+        for is_open in (False, True):
+            outer = outer_sheets(np.concatenate([first, within, pin, cavity]), is_open)
+            self.assertAlmostEqual(meshes.volume(outer), 1000 + 0.6 * 0.8 * 3 - 27, delta=0.5)
+            self.assertAlmostEqual(meshes.areas_and_normals(outer)[0].sum(), 600 + 2 * (0.6 + 0.8) * 3 + 54, delta=0.5)
 
     def test_topology_of_a_part_is_clean(self):
         corners = synthetic.part_corners(1)

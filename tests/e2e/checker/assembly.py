@@ -1,7 +1,8 @@
 """The parts, moved back by the inverse of their transforms, are the model.
 
 Every point of the parts' surface is one of four: on a cut (another part's surface faces it there), on the
-model's surface, on a cavity's wall (inside the model, about a wall away from its surface), or wrong.
+model's surface, on a cavity's wall (inside the model, about a wall away from its surface), or wrong. The model's
+surface is that of the matter: sheets within it are nobody's (outside.py).
 """
 import hashlib
 import pathlib
@@ -10,6 +11,7 @@ import numpy as np
 
 from . import meshes
 from .columns import Grid, intervals
+from .outside import Matter, outer_sheets
 from .report import first_few
 from .tree import Tree
 
@@ -140,10 +142,12 @@ def _check_glue(assembled, number, report):
 def _check_surface(job, assembled, model, number, report):
     tolerance = max(SURFACE_TOLERANCE_MM, job.data.get("resample_tolerance_mm") or 0)
     wall = job.data["shell"]["wall_mm"]
-    matter = sum(meshes.volume(corners) for corners in assembled.corners.values())
-    hollow = wall > 0 and matter < SOLID_FRACTION * meshes.volume(model)
-    model_tree = Tree(model)
+    volume = sum(meshes.volume(corners) for corners in assembled.corners.values())
     rim = open_rim(model)
+    matter = Matter(model, is_open=rim is not None)
+    outside = outer_sheets(model, is_open=rim is not None)
+    outside_tree = Tree(outside)
+    hollow = wall > 0 and volume < SOLID_FRACTION * meshes.volume(outside)
     kinds = {"model": 0, "cut": 0, "cavity": 0, "hole": 0}
     furthest, wrong, shallowest = 0.0, [], np.inf
     for part in assembled.parts:
@@ -154,9 +158,10 @@ def _check_surface(job, assembled, model, number, report):
         for touching in assembled.facing_other(part["id"], points, normals).values():
             cut[touching] = True
         points = points[~cut]
-        distance, _ = model_tree.closest(points)
+        distance, _ = outside_tree.closest(points)
         off = distance > tolerance
-        inside = model_tree.winding(points) > 0
+        inside = np.zeros(len(points), dtype=bool)
+        inside[off] = matter.holds(points[off])
         cavity = off & inside & (distance >= CAVITY_FRACTION * wall) & hollow
         hole = off & ~cavity & _nearest_is(rim, points, distance)
         bad = off & ~cavity & ~hole
@@ -175,20 +180,17 @@ def _check_surface(job, assembled, model, number, report):
                  first_few(wrong, 3) or f"{furthest:.5f} mm at most, {tolerance} mm allowed ({counts} points)")
     if kinds["cavity"]:
         report.note(f"input {number}: cavity walls below the model's surface", f"{shallowest:.3f} mm least, wall_mm {wall}")
-    _check_coverage(assembled, model, model_tree, tolerance, number, report)
+    _check_coverage(assembled, outside, tolerance, number, report)
 
 
-def _check_coverage(assembled, model, model_tree, tolerance, number, report):
-    """From the model to the parts. Sheets of the model inside its own matter are nobody's outer surface."""
-    points, rows = sample_surface(model)
-    normals = meshes.areas_and_normals(model)[1][rows]
+def _check_coverage(assembled, outside, tolerance, number, report):
+    """From the model to the parts."""
+    points, _ = sample_surface(outside)
     distance, _ = Tree(assembled.all_corners()).closest(points)
-    off = np.flatnonzero(distance > tolerance)
-    inner = model_tree.winding(points[off] + 1e-3 * normals[off]) > 0
-    bad = off[~inner]
-    figures = f"{distance[np.setdiff1d(np.arange(len(points)), off[inner])].max(initial=0):.5f} mm at most, {len(points)} points"
+    bad = np.flatnonzero(distance > tolerance)
+    figures = f"{distance.max(initial=0):.5f} mm at most, {len(points)} points"
     if len(bad):
-        worst = bad[distance[bad].argmax()]
+        worst = distance.argmax()
         figures = f"{len(bad)} of {len(points)} points off, {distance[worst]:.4f} mm at {np.round(points[worst], 2).tolist()}"
     report.check(f"input {number}: the model's surface is covered by the parts", len(bad) == 0, figures)
 
