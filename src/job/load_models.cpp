@@ -73,8 +73,8 @@ LoadedModel load_model(const std::filesystem::path& path, const Sizing& sizing, 
   loaded.surface = std::make_shared<const Mesh>(
       unite_bodies(repair(file.soup, warnings, progress), warnings, progress));
   if (!file.left_out.empty())
-    warnings.push_back({"left_out", loaded.input.file + ": " + file.left_out +
-                                        " of the slicer's project left out, the rest is printed"});
+    warnings.push_back(
+        {"left_out", loaded.input.file + ": " + file.left_out + " left out, the rest is printed"});
   check_size(loaded.input.file, *loaded.surface, warnings);
   return loaded;
 }

@@ -37,6 +37,8 @@ std::unique_ptr<XmlPart> Archive3mf::part(std::string_view name) {
   part->text = std::move(*text);
   if (!part->tree.load_buffer_inplace(part->text.data(), part->text.size()))
     refuse_file("its XML is not well-formed");
+  // the parser takes what follows the root for more of it
+  if (part->tree.document_element().next_sibling()) refuse_file("its XML holds more than one root");
   return part;
 }
 

@@ -20,11 +20,18 @@ TriangleSoup read_obj(std::string_view bytes, const Progress& progress);
 TriangleSoup read_ply(std::string_view bytes, const Progress& progress);
 TriangleSoup read_off(std::string_view bytes, const Progress& progress);
 
+// What a 3MF holds besides matter that is to be printed; counts.
+struct LeftOut3mf {
+  int modifiers = 0;        // volumes of a slicer's project
+  int support_helpers = 0;  // its support blockers and enforcers
+  int support_objects = 0;
+  int other_objects = 0;  // of type "other"
+  int unprinted_items = 0;
+};
+
 struct Parts3mf {
   TriangleSoup soup;  // mm
-  // Volumes of a slicer's project that hold no matter, and are left out.
-  int modifiers = 0;
-  int support_helpers = 0;
+  LeftOut3mf left_out;
 };
 Parts3mf read_3mf(std::string_view bytes, const Progress& progress);
 

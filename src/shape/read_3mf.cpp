@@ -1,6 +1,5 @@
 // Core 3MF: a ZIP archive with an XML model part (3MF Core Specification 1.3), those that it refers
 // to (production extension), and what slicers' projects say about them.
-#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "base/error.h"
 #include "shape/archive_3mf.h"
 #include "shape/formats.h"
+#include "shape/unread_3mf.h"
 #include "shape/volume_roles.h"
 
 namespace packmerger {
@@ -21,24 +21,23 @@ constexpr int kMaxVisits = 1'000'000;  // components may double at every level
 
 constexpr std::string_view kModelRelationship =
     "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-// Extensions that may be required without changing the shapes: production and materials.
-constexpr std::array<std::string_view, 2> kHarmlessExtensions = {
-    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
-    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"};
+std::string without_slash(std::string name) {
+  name.erase(0, name.find_first_not_of('/'));
+  return name;
+}
 
 // The name of the root model part.
 std::string model_part(Archive3mf& archive) {
+  std::set<std::string> found;
   if (const auto relations = archive.part("_rels/.rels"))
     for (const pugi::xml_node& relationship :
          child_named(relations->tree, "Relationships").children())
       if (relationship.attribute("Type").value() == kModelRelationship)
-        return relationship.attribute("Target").value();
-  return "3D/3dmodel.model";
-}
-
-std::string without_slash(std::string name) {
-  name.erase(0, name.find_first_not_of('/'));
-  return name;
+        found.insert(without_slash(relationship.attribute("Target").value()));
+  if (found.size() > 1)
+    throw Error(Fault::kBadInput, "The 3MF file names several root models, where one is meant",
+                "Export the models one by one.");
+  return found.empty() ? "3D/3dmodel.model" : *found.begin();
 }
 
 double unit_mm(const std::string& unit) {
@@ -87,32 +86,25 @@ std::int64_t index_of(const pugi::xml_node& node, const char* name) {
   return *index;
 }
 
-void refuse_required_extensions(const pugi::xml_node& model) {
-  std::string_view prefixes = model.attribute("requiredextensions").value();
-  for (auto prefix = take_word(prefixes); !prefix.empty(); prefix = take_word(prefixes)) {
-    const std::string uri = model.attribute(("xmlns:" + std::string(prefix)).c_str()).value();
-    if (std::find(kHarmlessExtensions.begin(), kHarmlessExtensions.end(), uri) ==
-        kHarmlessExtensions.end())
-      throw Error(Fault::kBadInput,
-                  "The 3MF file requires an extension that is not supported (" +
-                      (uri.empty() ? std::string(prefix) : uri) + ")",
-                  "Export it as core 3MF, or as STL.");
-  }
-}
-
-[[noreturn]] void refuse_negative_volume(const std::string& object) {
-  throw Error(Fault::kBadInput,
-              "The 3MF project takes a negative volume away from object " + object +
-                  ", which is not supported",
-              "Export the model from the slicer as STL, or subtract the volume in the program it "
-              "was drawn with.");
-}
-
 // The p:path of an item or a component; empty: the part that it stands in.
 std::string path_of(const pugi::xml_node& referrer) {
   for (const pugi::xml_attribute& attribute : referrer.attributes())
     if (local_name(attribute.name()) == "path") return without_slash(attribute.value());
   return "";
+}
+
+enum class ObjectUse { kMatter, kSupport, kOther };
+
+ObjectUse use_of(const pugi::xml_node& object) {
+  const std::string_view type = object.attribute("type").value();
+  if (type.empty() || type == "model" || type == "surface") return ObjectUse::kMatter;
+  if (type == "support" || type == "solidsupport") return ObjectUse::kSupport;
+  if (type == "other") return ObjectUse::kOther;
+  // one that is not known may mean that there is no matter
+  throw Error(Fault::kBadInput,
+              "The 3MF file holds an object of a type that is not known (" +
+                  std::string(type.substr(0, 40)) + ")",
+              "Export it as core 3MF, or as STL.");
 }
 
 // A model part of the archive.
@@ -125,7 +117,7 @@ struct ModelPart {
 class ModelReader {
  public:
   ModelReader(Archive3mf& archive, const Progress& progress)
-      : archive_(archive), progress_(progress), root_(without_slash(model_part(archive))) {}
+      : archive_(archive), progress_(progress), root_(model_part(archive)) {}
 
   Parts3mf read() {
     const ModelPart& root = part(root_);
@@ -133,11 +125,19 @@ class ModelReader {
     progress_.check();
     const pugi::xml_node model = child_named(root.xml->tree, "model");
     for (const pugi::xml_node& item : child_named(model, "build").children()) {
-      if (local_name(item.name()) != "item" || is_not_printed(item)) continue;
+      if (local_name(item.name()) != "item") continue;
+      if (is_not_printed(item)) {
+        ++left_out_.unprinted_items;
+        continue;
+      }
       const std::string path = path_of(item);
       add_object(item, path.empty() ? root_ : path, transform_of(item, root.unit), 0);
     }
-    return {soup_.finish(), modifiers_, support_helpers_};
+    if (soup_.point_count() == 0)
+      throw Error(Fault::kBadInput, "The 3MF file's build holds nothing to print",
+                  "Put the model on the plate in the program that made the file, and export it "
+                  "again.");
+    return {soup_.finish(), left_out_};
   }
 
  private:
@@ -178,8 +178,11 @@ class ModelReader {
     const std::string id = referrer.attribute("objectid").value();
     const auto object = here.objects.find(id);
     if (object == here.objects.end()) refuse_file("it refers to an object that is not there");
-    const std::string_view type = object->second.attribute("type").value();
-    if (type == "support" || type == "solidsupport" || type == "other") return;
+    if (const ObjectUse use = use_of(object->second); use != ObjectUse::kMatter) {
+      ++(use == ObjectUse::kSupport ? left_out_.support_objects : left_out_.other_objects);
+      return;
+    }
+    refuse_unread_shapes(object->second);
     if (!open_.insert({path, id}).second) refuse_file("one of its objects contains itself");
     static const ObjectRoles kNoRoles;
     const auto told = path == root_ ? roles_.find(id) : roles_.end();
@@ -190,7 +193,7 @@ class ModelReader {
       if (local_name(component.name()) != "component") continue;
       const auto role = roles.components.find(component.attribute("objectid").value());
       if (role != roles.components.end() && !is_matter(role->second, id)) {
-        ++(role->second == VolumeRole::kModifier ? modifiers_ : support_helpers_);
+        count_left_out(role->second);
         continue;
       }
       const std::string other = path_of(component);
@@ -203,6 +206,10 @@ class ModelReader {
   static bool is_matter(VolumeRole role, const std::string& object) {
     if (role == VolumeRole::kNegative) refuse_negative_volume(object);
     return role == VolumeRole::kPart;
+  }
+
+  void count_left_out(VolumeRole role) {
+    ++(role == VolumeRole::kModifier ? left_out_.modifiers : left_out_.support_helpers);
   }
 
   void add_mesh(const pugi::xml_node& mesh, double unit, const Transform& transform,
@@ -220,8 +227,7 @@ class ModelReader {
       soup_.add_point(transform.linear * (unit * point) + transform.offset);
     }
     for (const ObjectRoles::Range& range : roles.ranges)
-      if (!is_matter(range.role, id))
-        ++(range.role == VolumeRole::kModifier ? modifiers_ : support_helpers_);
+      if (!is_matter(range.role, id)) count_left_out(range.role);
     const std::int64_t count = soup_.point_count() - base;
     const bool mirrored = transform.linear.determinant() < 0;
     std::int64_t number = 0;
@@ -246,8 +252,7 @@ class ModelReader {
   std::map<std::string, ObjectRoles> roles_;
   std::set<std::pair<std::string, std::string>> open_;  // being added, to find cycles
   int visits_ = 0;
-  int modifiers_ = 0;
-  int support_helpers_ = 0;
+  LeftOut3mf left_out_;
   SoupBuilder soup_;
 };
 

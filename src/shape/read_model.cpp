@@ -80,16 +80,26 @@ std::string format_of(std::string_view bytes, const std::string& extension) {
   return "";
 }
 
-std::string counted(int count, const char* thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
-std::string told(const Parts3mf& parts) {
+// "2 modifiers and 1 support object"; empty where nothing was left out.
+std::string told(const LeftOut3mf& left_out) {
+  struct Kind {
+    int count;
+    const char* one;
+    const char* many;
+  };
+  const std::array<Kind, 5> kinds = {{
+      {left_out.modifiers, "modifier", "modifiers"},
+      {left_out.support_helpers, "support blocker or enforcer", "support blockers or enforcers"},
+      {left_out.support_objects, "support object", "support objects"},
+      {left_out.other_objects, "object of type \"other\"", "objects of type \"other\""},
+      {left_out.unprinted_items, "item that is not to be printed",
+       "items that are not to be printed"},
+  }};
   std::string text;
-  if (parts.modifiers > 0) text = counted(parts.modifiers, "modifier");
-  if (parts.support_helpers > 0)
-    text += (text.empty() ? "" : " and ") +
-            counted(parts.support_helpers, "support blocker or enforcer");
+  for (const Kind& kind : kinds)
+    if (kind.count > 0)
+      text += (text.empty() ? "" : " and ") + std::to_string(kind.count) + " " +
+              (kind.count == 1 ? kind.one : kind.many);
   return text;
 }
 
@@ -137,7 +147,7 @@ ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
   if (file.format == "3mf") {
     Parts3mf parts = read_3mf(bytes, progress);
     file.soup = std::move(parts.soup);
-    file.left_out = told(parts);
+    file.left_out = told(parts.left_out);
   }
   if (file.format.empty())
     throw Error(Fault::kBadInput, "The model file's format is not known",

@@ -18,7 +18,7 @@ struct ModelFile {
   TriangleSoup soup;      // the file's unit; mm where has_unit
   bool has_unit = false;  // 3MF declares its unit and was converted; the other formats have none
   std::string format;     // "stl", "obj", "ply", "off" or "3mf"
-  std::string left_out;   // "2 modifiers": what a slicer's project holds besides matter; or empty
+  std::string left_out;   // "2 modifiers": what a 3MF holds besides matter to print; or empty
 };
 
 // The content decides the format where it can (a ZIP holding a 3D model part is 3MF; "ply" and
@@ -32,8 +32,9 @@ struct ModelFile {
 // indices within points and every coordinate is finite; nothing else is promised: see repair().
 // 3MF: items, components and their transforms are applied, in mm; objects of type "support" and
 // "other" and items that are not to be printed are left out. So are the modifiers, support blockers
-// and support enforcers of PrusaSlicer's, Bambu Studio's and OrcaSlicer's projects; a project with
-// a negative volume is refused.
+// and support enforcers of PrusaSlicer's, Bambu Studio's and OrcaSlicer's projects. Refused are a
+// project with a negative volume, objects of types that are not known, and shapes that are
+// told by more than meshes: beams, slices (unless the mesh is called their equal) and the like.
 //
 // Nothing in the file is trusted: counts are checked against the bytes that are there before
 // memory is taken. Limits: 1 GiB a file; 512 MiB, and 200 times the archive's size, what is read of

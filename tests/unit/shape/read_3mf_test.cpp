@@ -66,10 +66,13 @@ TEST(Read3mf, MirroredObjectsStayOutward) {
 TEST(Read3mf, LeavesOutSupportAndWhatIsNotPrinted) {
   const std::string resources =
       cube_object("id=\"1\"") + cube_object("id=\"2\" type=\"support\"") + cube_object("id=\"3\"");
-  const TriangleSoup soup = read(three_mf(
-      "", resources,
-      "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\" printable=\"0\"/>"));
-  EXPECT_EQ(soup.triangles.size(), 12u);
+  const ModelFile file = read_model_bytes(
+      three_mf(
+          "", resources,
+          "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\" printable=\"0\"/>"),
+      "", Progress());
+  EXPECT_EQ(file.soup.triangles.size(), 12u);
+  EXPECT_EQ(file.left_out, "1 support object and 1 item that is not to be printed");
 }
 
 TEST(Read3mf, FindsTheModelPartByItsRelationship) {
@@ -119,6 +122,52 @@ TEST(Read3mf, SaysWhichExtensionItDoesNotSupport) {
   EXPECT_THAT(refusal(three_mf("requiredextensions=\"b\" xmlns:b=\"urn:beams\"",
                                cube_object("id=\"1\""), "<item objectid=\"1\"/>")),
               HasSubstr("urn:beams"));
+}
+
+TEST(Read3mf, RefusesShapesThatAreMoreThanTheirMesh) {
+  const std::string mesh = mesh_xml(fixtures::cube(1));
+  const std::string slices = "<slicestack id=\"5\"/><object id=\"1\" s:slicestackid=\"5\" ";
+  const std::string beams =
+      "<b:beamlattice><b:beams><b:beam v1=\"0\" v2=\"6\"/></b:beams></b:beamlattice></mesh>";
+  const auto told = [](const std::string& resources) {
+    return refusal(three_mf("", resources, "<item objectid=\"1\"/>"));
+  };
+  EXPECT_THAT(told(slices + ">" + mesh + "</object>"), HasSubstr("object 1 holds slices"));
+  EXPECT_THAT(told(slices + "s:meshresolution=\"lowres\">" + mesh + "</object>"),
+              HasSubstr("object 1 holds slices"));
+  EXPECT_THAT(
+      told("<object id=\"1\">" + mesh.substr(0, mesh.find("</mesh>")) + beams + "</object>"),
+      HasSubstr("object 1 holds beams"));
+  EXPECT_THAT(told("<object id=\"1\"><v:levelset/></object>"), HasSubstr("<v:levelset>"));
+  EXPECT_THAT(told("<object id=\"1\"/>"), HasSubstr("holds no mesh"));
+  const std::string full =
+      slices + "s:meshresolution=\"fullres\"><metadatagroup/><x:settings/>" + mesh + "</object>";
+  EXPECT_EQ(read(three_mf("", full, "<item objectid=\"1\"/>")).triangles.size(), 12u);
+}
+
+TEST(Read3mf, NamesWhatIsAmbiguousOrEmpty) {
+  const std::string cube = cube_object("id=\"1\"");
+  const std::string model =
+      "<model><resources>" + cube + "</resources><build><item objectid=\"1\"/></build></model>";
+  const auto root = [](const std::string& target) {
+    return "<Relationship Target=\"" + target +
+           "\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>";
+  };
+  const auto archive = [&](const std::string& other, const std::string& content) {
+    return written::zipped({{"_rels/.rels", "<Relationships>" + root("/3D/a.model") + root(other) +
+                                                "</Relationships>"},
+                            {"3D/a.model", content},
+                            {"3D/b.model", content}});
+  };
+  EXPECT_THAT(refusal(archive("/3D/b.model", model)), HasSubstr("several root models"));
+  EXPECT_EQ(read(archive("3D/a.model", model)).triangles.size(), 12u);
+  EXPECT_THAT(refusal(archive("3D/a.model", model + model)), HasSubstr("more than one root"));
+  EXPECT_THAT(refusal(three_mf("", cube, "")), HasSubstr("build holds nothing to print"));
+  EXPECT_THAT(refusal(three_mf("", cube, "<item objectid=\"1\" printable=\"0\"/>")),
+              HasSubstr("build holds nothing to print"));
+  EXPECT_THAT(
+      refusal(three_mf("", cube_object("id=\"1\" type=\"phantom\""), "<item objectid=\"1\"/>")),
+      HasSubstr("type that is not known (phantom)"));
 }
 
 // Two unit cubes in one mesh, 5 mm apart, and the settings beside them.
