@@ -49,7 +49,7 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
     if (unanswered_.empty() && resend_)
       resend_.reset();
     else
-      doubted_until_ = last_ + kDoubtedLines;
+      doubted_until_ = last_ + kDoubtedLines, in_doubt_ = true;
     return;
   }
   const Given given = unanswered_[answered];
@@ -61,6 +61,7 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
     // Answers come in order, so whatever was still owed got lost, but not a line that was given
     // behind the question.
     taken_for_granted_ = lost && !resend_;
+    in_doubt_ = in_doubt_ || lost;
     std::erase_if(unanswered_, [](const Given& each) { return each.number == 0; });
     m105_behind_ = false;
     proven_ = unanswered_.empty() ? last_ : unanswered_.front().number - 1;
@@ -74,6 +75,7 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
 }
 
 void GcodeStream::handle_resend(std::size_t asked) {
+  line_count_ = LineCount::kKept;
   std::size_t next = asked;
   if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
   // A printer that was reset asks for line 1; in the first lines that would seem to be near. Line 1
@@ -136,8 +138,10 @@ void GcodeStream::watch_silence() {
 // An empty line ends a half line that lost bytes left in the printer: Marlin then asks for the line
 // again. M105 is answered by a printer that is alive, and only behind everything sent before. The
 // same line is never just repeated: Marlin 2.1 answers a line that it already has with silence. A
-// printer that is alive meanwhile reads nothing yet, so it is asked ever more seldom.
+// printer that is alive meanwhile reads nothing yet, so it is asked ever more seldom. One that
+// counts no lines may answer the empty line too, in the place of the one that got lost.
 void GcodeStream::recover() {
+  in_doubt_ = true;
   if (attempt_at_s_ > given_at_s_ && alive_at_s_ >= attempt_at_s_) patience_factor_ *= 2;
   channel_.send("");
   ask_for_proof();

@@ -25,7 +25,9 @@ void GcodeStream::handle_unknown(const std::string& word) {
   const auto given = std::find_if(unanswered_.begin(), unanswered_.end(), [&](const Given& g) {
     return g.number > 0 && gcode_word(command(g.number)) == word;
   });
-  // Noise makes unknown commands of what is sent without a number.
+  // Noise makes unknown commands of what is sent without a number, and, where numbers are not
+  // looked at, of every line.
+  if (given == unanswered_.end()) in_doubt_ = true;
   if (given == unanswered_.end() || cancelling_) return;
   const Omission omission = omission_of(word);
   if (omission == Omission::kOfPrint)

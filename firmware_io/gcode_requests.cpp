@@ -98,6 +98,7 @@ std::size_t GcodeStream::pause(std::size_t number) {
   if (parked && !cancelling_) number = execute_between(number, resume);
   pause_text_.clear();
   between_ = false;
+  place_.forget();
   return number;
 }
 

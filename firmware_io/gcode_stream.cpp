@@ -23,7 +23,9 @@ GcodeStream::GcodeStream(GcodeChannel& channel, GcodeScript commands, const Stre
       options_(options),
       abilities_(abilities),
       reporter_(reporter),
-      control_(control) {}
+      control_(control),
+      // Several lines on their way can be put right only where the printer counts them.
+      in_doubt_(options.window_bytes > 0) {}
 
 void GcodeStream::run() {
   reporter_.state(PrintState::kPrinting);
@@ -67,9 +69,25 @@ std::size_t GcodeStream::exchange(std::size_t number) {
   resend_.reset();
   m105_behind_ = taken_for_granted_ = false;
   if (last_ > 0) hear_what_came();
+  if (is_in_doubt())
+    if (const auto again = settle_doubt()) return *again;
   if (paused_ && !cancelling_ && may_pause_before(number)) return number;
   const bool gives = !resend_;
   if (gives) give(number);
+  if (const auto again = hear_answers()) return *again;
+  if (is_in_doubt())
+    if (const auto again = settle_doubt()) return *again;
+  if (taken_for_granted_) careful_until_ = last_ + kCareful;
+  unproven_ = taken_for_granted_ ? unproven_ + 1 : 0;
+  if (unproven_ > kMaxUnproven)
+    fail("The printer no longer acknowledges what it is sent",
+         "Check the cable, switch the printer off and on, then print the job again.");
+  if (!taken_for_granted_) far_back_ = 0;
+  return gives ? last_ + 1 : number;
+}
+
+// Until nothing is owed any more; returns a line that the printer asks for.
+std::optional<std::size_t> GcodeStream::hear_answers() {
   while (!unanswered_.empty() || resend_) {
     if (resend_ && channel_.now_s() >= resend_->due_s) {
       unanswered_.clear();
@@ -84,20 +102,14 @@ std::size_t GcodeStream::exchange(std::size_t number) {
     if (const auto reply = channel_.receive(resend_ ? kSettle_s : kSlice_s)) handle(*reply);
     watch_silence();
   }
-  if (taken_for_granted_) careful_until_ = last_ + kCareful;
-  unproven_ = taken_for_granted_ ? unproven_ + 1 : 0;
-  if (unproven_ > kMaxUnproven)
-    fail("The printer no longer acknowledges what it is sent",
-         "Check the cable, switch the printer off and on, then print the job again.");
-  if (!taken_for_granted_) far_back_ = 0;
-  return gives ? last_ + 1 : number;
+  return std::nullopt;
 }
 
 // An ok that came though nothing is owed must not answer the next line.
-void GcodeStream::hear_what_came() {
+void GcodeStream::hear_what_came(double quiet_s) {
   constexpr int kMost = 100;  // of a printer that never falls silent
   for (int i = 0; i < kMost; ++i) {
-    const auto reply = channel_.receive(0);
+    const auto reply = channel_.receive(quiet_s);
     if (!reply) return;
     handle(*reply);
   }
@@ -112,8 +124,9 @@ bool GcodeStream::may_pause_before(std::size_t number) const {
 bool GcodeStream::may_give_another() const {
   const std::size_t next = last_ + 1;
   const bool calm = !resend_ && !m105_behind_ && !cancelling_ && !paused_ && !between_;
-  if (options_.window_bytes == 0 || !calm || next < careful_until_ || next > commands_.size() ||
-      unanswered_.size() >= kMostLines || blocks(command(last_)) || blocks(command(next)))
+  if (options_.window_bytes == 0 || line_count_ != LineCount::kKept || !calm ||
+      next < careful_until_ || next > commands_.size() || unanswered_.size() >= kMostLines ||
+      blocks(command(last_)) || blocks(command(next)))
     return false;
   std::size_t bytes = numbered_gcode(next, command(next)).size();
   for (const Given& given : unanswered_) bytes += given.bytes;
@@ -125,6 +138,7 @@ void GcodeStream::give(std::size_t number) {
   unanswered_.push_back({number, line.size(), gcode_word(command(number)) == "M105"});
   line.pop_back();
   channel_.send(line);
+  if (number > highest_) trace_ = place_.follow(command(number));
   last_ = number;
   highest_ = std::max(highest_, number);
   alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
@@ -141,7 +155,8 @@ void GcodeStream::handle(const GcodeReply& reply) {
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
       complaint_.clear();
-      if (reply.has_position && is_behind_program(last_)) position_seen_ = true;
+      if (reply.has_position) hear_position(reply);
+      heed_probe(reply);
       handle_ok(reply);
       break;
     case GcodeReplyKind::kResend:
@@ -171,13 +186,18 @@ void GcodeStream::handle(const GcodeReply& reply) {
       if (heating && !cancelling_ && !between_) reporter_.state(PrintState::kHeating, reply.text);
       break;
     case GcodeReplyKind::kPosition:
-      if (is_behind_program(last_)) position_seen_ = true;
-      if (!tells_position(command(last_))) positions_unasked_ = true;
+      hear_position(reply);
+      if (!tells_position(command(last_)) && !asks_position_) positions_unasked_ = true;
       break;
     default:
       cancelling_ ? hear_while_cancelling(reply) : handle_action(reply);
       break;
   }
+}
+
+void GcodeStream::hear_position(const GcodeReply& reply) {
+  if (is_behind_program(last_)) position_seen_ = true;
+  if (asks_position_) told_ = read_gcode_point(reply.text);
 }
 
 void GcodeStream::send_raw(std::string_view line) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode_channel.h"
+#include "firmware_io/gcode_place.h"
 #include "firmware_io/gcode_script.h"
 #include "firmware_io/heat_watch.h"
 #include "firmware_io/print_state.h"
@@ -57,6 +58,7 @@ class GcodeStream {
     std::size_t number = 0;
     double due_s = 0;
   };
+  enum class LineCount { kUnknown, kKept, kIgnored };
   // Lines that are none of the program's.
   struct Insertion {
     std::size_t first = 0;
@@ -69,12 +71,14 @@ class GcodeStream {
   std::size_t program_lines_before(std::size_t number) const;
   void tell_done(std::size_t next);
   std::size_t exchange(std::size_t number);
+  std::optional<std::size_t> hear_answers();
   void give(std::size_t number);
   bool may_give_another() const;
-  void hear_what_came();
+  void hear_what_came(double quiet_s = 0);
   bool may_pause_before(std::size_t number) const;
   void silence_positions(std::size_t number);
   void handle(const GcodeReply& reply);
+  void hear_position(const GcodeReply& reply);
   void send_raw(std::string_view line);
   void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
@@ -90,6 +94,14 @@ class GcodeStream {
   void ask_for_proof();
   bool wants_proof() const;
   void ask_temperatures();
+
+  // gcode_doubt.cpp: printers that count no lines
+  bool is_in_doubt() const;
+  std::optional<std::size_t> settle_doubt();
+  std::optional<std::size_t> learn_line_count();
+  void heed_probe(const GcodeReply& ok);
+  std::optional<std::size_t> prove_by_position(bool answered);
+  [[noreturn]] void fail_in_doubt(bool answered) const;
 
   // gcode_complaints.cpp: what the machine finds fault with
   void handle_error(const GcodeReply& reply);
@@ -156,6 +168,11 @@ class GcodeStream {
   double patience_factor_ = 1;
   double busy_at_s_ = 0;
   HeatWatch heat_;
+  bool in_doubt_ = false;       // what became of the line, if the printer counts none
+  bool probes_ = false;         // it is being asked whether it counts lines,
+  double probed_at_s_ = 0;      // since then
+  bool asks_position_ = false;  // M114 was sent to find out
+  std::optional<GcodePoint> told_;
 
   // over several exchanges
   std::size_t highest_ = 0;          // of all lines ever given
@@ -171,6 +188,10 @@ class GcodeStream {
   bool temperatures_in_ok_ = false;  // as the printer answers M105
   bool positions_unasked_ = false;   // it reports its position of its own (M154)
   double busy_interval_s_ = 0;       // the longest
+  LineCount line_count_ = LineCount::kUnknown;
+  GcodePlace place_;
+  GcodeTrace trace_;  // of the line given last
+  int missed_ = 0;    // lines that got lost on their way to a printer that counts none
 };
 
 // The commands of a text of the profile.

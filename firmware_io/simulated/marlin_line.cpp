@@ -68,10 +68,11 @@ void Marlin::read_lines(double now_s) {
 
 void Marlin::take_line(std::string line, double now_s) {
   line = without_comment(line.substr(0, kLongestLine));
-  if (line.empty()) return;  // an empty line gets no ok
-  const bool numbered = line[0] == 'N';
+  if (line.empty() && traits_.counts_lines) return;  // an empty line gets no ok
+  const bool numbered = traits_.counts_lines && line[0] == 'N';
   if (numbered && !take_number(line)) return;
   line.erase(std::min(line.rfind('*'), line.size()));
+  if (!traits_.counts_lines) line.erase(0, behind_number(line));
   // Without an emergency parser a command acts before its turn when its line is read, and only
   // where the line begins with it.
   if (!traits_.emergency_parser && !numbered && !is(line, "M876")) heed_at_once(line, now_s);

@@ -46,8 +46,9 @@ void Marlin::plan(double seconds, double now_s) {
 }
 
 void Marlin::execute(const std::string& command, double now_s) {
-  executed_.push_back(command);
   block(Blocked::kNo, now_s);
+  if (command.empty()) return;
+  executed_.push_back(command);
   if (is(command, "M600") && traits_.filament_change) return change_filament(now_s);
   if (is(command, "M600")) return say_unknown(command);
   if (execute_move(command, now_s)) return;
@@ -138,7 +139,7 @@ void Marlin::execute_report(const std::string& command, double now_s) {
     say(std::string("Cap:PROMPT_SUPPORT:") + (traits_.prompts ? "1" : "0"));
     say(std::string("Cap:EMERGENCY_PARSER:") + (traits_.emergency_parser ? "1" : "0"));
   }
-  const char letter = command.empty() ? '?' : command[0];
+  const char letter = command[0];
   if (letter != 'G' && letter != 'M' && letter != 'T') say_unknown(command);
 }
 

@@ -29,6 +29,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"positions_unasked", &T::positions_unasked},
                                  {"heats_quietly", &T::heats_quietly},
                                  {"doubled_ok", &T::doubled_ok},
+                                 {"counts_lines", &T::counts_lines},
                                  {"comment_blank", &T::comment_blank}};
   return names;
 }

@@ -29,6 +29,8 @@ struct MarlinTraits {
   bool positions_unasked = false;  // tells its position every second from its start, as by M154 S1
   bool heats_quietly = false;      // waits for heat with neither "busy" nor "W:", as Klipper does
   bool doubled_ok = false;         // every fifth ok comes twice
+  bool counts_lines = true;        // else it looks at neither number nor checksum, nor asks for a
+                                   // line, and says ok to an empty one, as Klipper does
   bool comment_blank = false;      // "// action:", "// Unknown command:", as Klipper writes them
 };
 

@@ -133,7 +133,8 @@ std::size_t longest_lead(MarlinTraits traits, FaultRates rates) {
     if (port.sent.size() == seen) return;
     seen = port.sent.size();
     const std::size_t at = port.sent.rfind("\nN");
-    if (at == std::string::npos) return;
+    // Under a wrong number it is only asked whether the printer counts.
+    if (at == std::string::npos || port.sent.find("M105*", at) != std::string::npos) return;
     const auto given = static_cast<std::size_t>(std::atol(port.sent.c_str() + at + 2));
     const std::size_t executed = only(port.executed(), program).size();
     if (given > executed) lead = std::max(lead, given - executed);

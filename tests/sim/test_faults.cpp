@@ -142,7 +142,8 @@ void check_gcode_print(Tally& tally, simulated::MarlinTraits traits) {
   const bool instant = *rc::gen::arbitrary<bool>();
   // Now and then something in which firmwares differ.
   for (const std::string& name : simulated::marlin_trait_names())
-    if (*rc::gen::inRange(0, 20) == 0)
+    // What is garbled on its way to a printer that checks no sums, nobody can put right.
+    if (name != "counts_lines" && *rc::gen::inRange(0, 20) == 0)
       simulated::set_trait(traits, name + (*rc::gen::arbitrary<bool>() ? "=on" : "=off"));
   simulated::Marlin firmware(simulated::Pace{1, instant}, traits);
   FaultyPort port(firmware, any_rates(), *rc::gen::arbitrary<std::uint64_t>());

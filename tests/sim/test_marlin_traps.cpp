@@ -269,6 +269,12 @@ TEST(MarlinTraps, EveryFifthOkComesTwice) {
   EXPECT_EQ(count(Wire(marlin).says("M82\nM82\nM82\nM82\nM82\n"), "ok\n"), 6U);
 }
 
+TEST(MarlinTraps, LooksAtNoNumberAndAnswersAnEmptyLine) {
+  Marlin marlin(kRealTime, with("counts_lines=off"));
+  Wire wire(marlin);
+  EXPECT_EQ(wire.says(line(7, "M82") + line(7, "M82") + "N1 M83*99\n\n"), "ok\nok\nok\nok\n");
+}
+
 TEST(MarlinTraps, WhatIsBeyond95BytesIsDroppedAndTheLineAskedForAgain) {
   Marlin marlin(kRealTime);
   Wire wire(marlin);
@@ -284,6 +290,8 @@ TEST_P(EachMarlinTrap, IsPrintedThrough) {
   for (const MarlinTraits& version : {MarlinTraits(), marlin_1_1()})
     for (const char* value : {"=on", "=off"})
       for (const double rate : {0.0, 0.01}) {
+        // What is garbled on its way to a printer that checks no sums, nobody can put right.
+        if (rate > 0 && GetParam() + value == "counts_lines=off") continue;
         Marlin marlin(kRealTime, with(GetParam() + value, version));
         FaultyPort port(marlin, {.drop_byte = rate, .flip = rate, .split = 0.5}, 7);
         PrintControl control;

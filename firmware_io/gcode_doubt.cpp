@@ -1,0 +1,96 @@
+// What became of a line that a printer answered doubtfully: one that counts lines asks for what it
+// lacks, any other (Klipper) is asked where it stands.
+#include "firmware_io/gcode_stream.h"
+
+namespace packmerger {
+
+namespace {
+
+// A number so far ahead that no printer takes it for a doubled line.
+constexpr std::size_t kFarAhead = 1000;
+constexpr int kTries = 3;
+// A line that loses more is bad, and flips bits too, which nobody could see here.
+constexpr int kMostMissed = 5;
+
+}  // namespace
+
+bool GcodeStream::is_in_doubt() const {
+  return in_doubt_ && line_count_ != LineCount::kKept && !cancelling_ && !resend_ && last_ > 0;
+}
+
+// Returns the line to give again, where it got lost.
+std::optional<std::size_t> GcodeStream::settle_doubt() {
+  const bool answered = !taken_for_granted_ && attempt_at_s_ <= given_at_s_;
+  std::optional<std::size_t> again = learn_line_count();
+  if (!again && line_count_ == LineCount::kIgnored && !cancelling_)
+    again = prove_by_position(answered);
+  in_doubt_ = false;
+  return again;
+}
+
+// M105 under a wrong number: a printer that counts asks for the line that it lacks, or for the next
+// one; any other executes it.
+std::optional<std::size_t> GcodeStream::learn_line_count() {
+  for (int i = 0; i < kTries && line_count_ == LineCount::kUnknown && !cancelling_; ++i) {
+    hear_what_came(kSettle_s);
+    std::string line = numbered_gcode(last_ + kFarAhead, "M105");
+    line.pop_back();
+    probes_ = true;
+    probed_at_s_ = channel_.now_s();
+    send_raw(line);
+    unanswered_.back().asks_temperatures = true;
+    const auto again = hear_answers();
+    probes_ = false;
+    if (again) return again;
+  }
+  return std::nullopt;
+}
+
+// A temperature that was asked for in another way (after a silence) proves nothing.
+void GcodeStream::heed_probe(const GcodeReply& ok) {
+  const bool executed = probes_ && ok.has_temperature && attempt_at_s_ <= probed_at_s_;
+  if (executed && line_count_ == LineCount::kUnknown) line_count_ = LineCount::kIgnored;
+}
+
+std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
+  GcodeFate fate = GcodeFate::kUnknown;
+  for (int i = 0; i < kTries && fate == GcodeFate::kUnknown; ++i) {
+    told_.reset();
+    asks_position_ = true;
+    send_raw("M114");
+    const auto again = hear_answers();
+    hear_what_came(kSettle_s);
+    asks_position_ = false;
+    if (cancelling_) return std::nullopt;
+    if (again) return again;
+    if (told_) fate = fate_of(trace_, *told_, answered);
+  }
+  taken_for_granted_ = false;
+  if (fate == GcodeFate::kTaken) {
+    place_.learn(*told_);
+    return std::nullopt;
+  }
+  if (fate == GcodeFate::kUnknown || ++missed_ > kMostMissed) fail_in_doubt(answered);
+  return last_;
+}
+
+void GcodeStream::fail_in_doubt(bool answered) const {
+  const std::string line = "line " + std::to_string(last_) + " (" + command(last_) + ")";
+  const std::string hint =
+      "Look at what lies between PackMerger and the printer (cable, serial server, plug-in), then "
+      "print the job again.";
+  if (missed_ > kMostMissed)
+    fail("The way to the printer loses lines, such as " + line +
+             ", and the printer checks neither their numbers nor their sums",
+         hint);
+  if (answered)
+    fail(
+        "The printer is not where " + line +
+            " leads: something got lost or was doubled on its way, and the printer counts no lines",
+        hint);
+  fail("Nobody can tell whether the printer executed " + line +
+           ": its answer got lost, and the printer counts no lines",
+       hint);
+}
+
+}  // namespace packmerger

@@ -1,0 +1,155 @@
+#include "firmware_io/gcode_place.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "gcode/known_codes.h"
+
+namespace packmerger {
+
+namespace {
+
+constexpr std::array<char, 4> kAxes = {'X', 'Y', 'Z', 'E'};
+constexpr std::size_t kE = 3;
+// Printers tell two or three decimals.
+constexpr double kRounding_mm = 0.0055;
+
+// At every axis where both are known.
+bool agree(const GcodePoint& a, const GcodePoint& b) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (a[i] && b[i] && std::abs(*a[i] - *b[i]) > kRounding_mm) return false;
+  return true;
+}
+
+// So far apart that what is told cannot be both.
+bool differ(const GcodePoint& a, const GcodePoint& b) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (a[i] && b[i] && std::abs(*a[i] - *b[i]) > 2 * kRounding_mm) return true;
+  return false;
+}
+
+// The axes of `point` that `other` knows too.
+GcodePoint where_known(GcodePoint point, const GcodePoint& other) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (!other[i]) point[i].reset();
+  return point;
+}
+
+}  // namespace
+
+GcodePoint read_gcode_point(std::string_view report) {
+  GcodePoint point;
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    const std::size_t at = report.find(std::string(1, kAxes[i]) + ":");
+    if (at == std::string_view::npos) continue;
+    const std::string number(report.substr(at + 2, report.find(' ', at + 3) - at - 2));
+    char* end = nullptr;
+    const double value = std::strtod(number.c_str(), &end);
+    if (end != number.c_str() && *end == '\0' && std::isfinite(value)) point[i] = value;
+  }
+  return point;
+}
+
+GcodeTrace GcodePlace::follow(std::string_view command) {
+  const GcodeLine line(command, GcodeRules::kMarlin);
+  GcodeTrace trace{at_, {}, true};
+  if (line.letter() == 'G' && line.sub_number() == 0)
+    trace.repeatable = line.readable() && follow_g(line);
+  else if (line.letter() == 'M' && line.sub_number() == 0)
+    trace.repeatable = follow_m(line);
+  else if (line.letter() == 'T')
+    at_ = {};
+  else if (!line.is_empty())
+    trace.repeatable = false, at_ = {};  // a macro
+  trace.after = at_;
+  return trace;
+}
+
+void GcodePlace::learn(const GcodePoint& told) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (!at_[i]) at_[i] = told[i];
+}
+
+bool GcodePlace::follow_g(const GcodeLine& line) {
+  switch (line.number()) {
+    case 0:
+    case 1:
+    case 2:
+    case 3:
+      return move(line);
+    case 10:
+    case 11:
+      at_[kE].reset();  // the firmware's own retraction
+      return true;
+    case 20:
+    case 21:
+      inches_ = line.number() == 20;
+      return true;
+    case 28:
+    case 29:
+      for (std::size_t i = 0; i < kE; ++i) at_[i].reset();
+      return true;
+    case 90:
+    case 91:
+      relative_ = line.number() == 91;
+      if (relative_e_ != relative_) relative_e_.reset();
+      return true;
+    case 92:
+      for (std::size_t i = 0; i < kAxes.size(); ++i)
+        if (line.has(kAxes[i])) at_[i] = inches_ ? std::nullopt : line.value(kAxes[i]);
+      return true;
+    default:
+      return leave(line);
+  }
+}
+
+bool GcodePlace::follow_m(const GcodeLine& line) {
+  switch (line.number()) {
+    case 82:
+    case 83:
+      relative_e_ = line.number() == 83;
+      return true;
+    case 18:
+    case 84:
+    case 220:
+    case 221:
+      return true;  // motors off, speed, flow
+    default:
+      return leave(line);
+  }
+}
+
+bool GcodePlace::move(const GcodeLine& line) {
+  bool repeatable = true;
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    if (!line.has(kAxes[i])) continue;
+    const std::optional<double> to = line.value(kAxes[i]);
+    const std::optional<bool> relative = i == kE ? relative_e_ : relative_;
+    repeatable = repeatable && relative == false;
+    if (!to || inches_ || !relative || (*relative && !at_[i]))
+      at_[i].reset();
+    else
+      at_[i] = *relative ? *at_[i] + *to : *to;
+  }
+  return repeatable;
+}
+
+// Whatever else there is: it leaves the head where it is, or nobody knows what it does.
+bool GcodePlace::leave(const GcodeLine& line) {
+  const bool stays = !cannot_follow(line, GcodeRules::kMarlin);
+  if (!stays) at_ = {};
+  return stays;
+}
+
+GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {
+  if (differ(line.before, line.after)) {
+    if (agree(told, line.after)) return GcodeFate::kTaken;
+    return agree(told, line.before) ? GcodeFate::kMissed : GcodeFate::kUnknown;
+  }
+  if (!agree(told, where_known(line.after, line.before))) return GcodeFate::kUnknown;
+  if (answered) return GcodeFate::kTaken;
+  return line.repeatable ? GcodeFate::kMissed : GcodeFate::kUnknown;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,57 @@
+// Where the head is after each line given, in the words of M114, for printers that count no lines.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "gcode/gcode_line.h"
+
+namespace packmerger {
+
+// X, Y, Z and E in the program's own coordinates, mm; empty: not known.
+using GcodePoint = std::array<std::optional<double>, 4>;
+
+// "X:10.000 Y:20.000 Z:0.200 E:3.150 Count X:800": the first of each.
+GcodePoint read_gcode_point(std::string_view report);
+
+// What one line does to the place, and whether it may be executed twice without harm.
+struct GcodeTrace {
+  GcodePoint before;
+  GcodePoint after;
+  bool repeatable = true;
+};
+
+class GcodePlace {
+ public:
+  GcodeTrace follow(std::string_view command);
+  // Somebody may have moved the head by hand.
+  void forget() { at_ = {}; }
+  // Where the head is behind the last line, of the axes that were not known.
+  void learn(const GcodePoint& told);
+
+ private:
+  // Each returns whether the line is repeatable.
+  bool follow_g(const GcodeLine& line);
+  bool follow_m(const GcodeLine& line);
+  bool move(const GcodeLine& line);
+  bool leave(const GcodeLine& line);
+
+  GcodePoint at_;
+  bool relative_ = false;
+  // G90 and G91 are for E too in some firmwares and not in others; empty where that decides.
+  std::optional<bool> relative_e_ = false;
+  bool inches_ = false;
+};
+
+enum class GcodeFate {
+  kTaken,
+  kMissed,  // or it may be given again, whatever became of it
+  kUnknown
+};
+
+// Of a line, by what the printer says behind it. answered: an ok came, which may have been another
+// line's.
+GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered);
+
+}  // namespace packmerger

@@ -1,0 +1,228 @@
+// Printers that look at neither the number nor the checksum of a line, and never ask for one
+// (Klipper): what got lost or was doubled is known by where the head stands.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "firmware_io/gcode_place.h"
+#include "firmware_io/simulated/marlin.h"
+#include "sim/scenario.h"
+
+namespace packmerger::test {
+namespace {
+
+using simulated::Marlin;
+using simulated::MarlinTraits;
+using simulated::Pace;
+using ::testing::HasSubstr;
+
+MarlinTraits uncounted() {
+  MarlinTraits traits;
+  traits.counts_lines = false;
+  traits.comment_blank = true;
+  return traits;
+}
+
+// Moves that each lead elsewhere, with filament as `mode` (M82 or M83) has it.
+std::vector<std::string> moves(const std::string& mode, int count) {
+  std::vector<std::string> program = {"M104 S100", "G28", "G90", mode, "G92 E0"};
+  for (int i = 1; i <= count; ++i)
+    program.push_back("G1 X" + std::to_string(i % 100) + "." + std::to_string(100 + i) + " Y" +
+                      std::to_string(i) + " E" + (mode == "M83" ? "0.05" : std::to_string(i)));
+  return program;
+}
+
+std::string text(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+struct Outcome {
+  std::optional<Error> failure;
+  std::vector<std::string> executed;  // of the program
+  std::string sent;
+};
+
+// What becomes of a numbered line on its way; `bytes` is all of it.
+using Harm = std::function<void(const std::string& command, std::string& bytes)>;
+
+Outcome outcome(const std::vector<std::string>& program, const Harm& harm,
+                const std::string& lost_answer = "", std::size_t window_bytes = 0) {
+  Marlin firmware(Pace{1, true}, uncounted());
+  FaultyPort port(firmware);
+  port.on_send = [&](std::string& bytes) {
+    const std::size_t begin = bytes.find(' ') + 1;
+    const std::string command = bytes.substr(begin, bytes.rfind('*') - begin);
+    if (!lost_answer.empty()) port.lose_answers = command == lost_answer;
+    if (harm && bytes.starts_with("N")) harm(command, bytes);
+  };
+  PrintControl control;
+  StreamOptions options = scenario_options();
+  options.timeout_s = 5;
+  options.window_bytes = window_bytes;
+  const auto failure = print(port, true, text(program), control, {}, options);
+  return {failure, only(port.executed(), program), port.sent};
+}
+
+TEST(Uncounted, ALostAnswerIsMadeUpFor) {
+  for (const char* mode : {"M82", "M83"}) {
+    const std::vector<std::string> program = moves(mode, 60);
+    const Outcome seen = outcome(program, {}, program[30]);
+    EXPECT_FALSE(seen.failure) << seen.failure->what();
+    EXPECT_EQ(seen.executed, program) << mode;
+    EXPECT_THAT(seen.sent, HasSubstr("\nM114\n"));
+  }
+}
+
+TEST(Uncounted, ALostLineIsGivenAgain) {
+  for (const char* mode : {"M82", "M83"}) {
+    const std::vector<std::string> program = moves(mode, 60);
+    for (const std::size_t lost : {0U, 1U, 3U, 4U, 5U, 40U}) {
+      bool done = false;
+      const Outcome seen = outcome(program, [&](const std::string& command, std::string& bytes) {
+        if (command == program[lost] && !std::exchange(done, true)) bytes.clear();
+      });
+      EXPECT_FALSE(seen.failure) << seen.failure->what();
+      EXPECT_EQ(seen.executed, program) << mode << ", line " << lost;
+    }
+  }
+}
+
+TEST(Uncounted, ALineThatLosesAgainAndAgainEndsThePrint) {
+  const std::vector<std::string> program = moves("M82", 60);
+  std::size_t lines = 0;
+  const Outcome seen = outcome(program, [&](const std::string&, std::string& bytes) {
+    if (++lines % 4 == 0) bytes.clear();
+  });
+  ASSERT_TRUE(seen.failure);
+  EXPECT_THAT(seen.failure->what(), HasSubstr("loses lines"));
+  EXPECT_THAT(seen.sent, HasSubstr("M104 S0\nM140 S0\n"));
+  EXPECT_LT(seen.executed.size(), 30u);
+}
+
+// Twice to one place is once; twice as much filament is not.
+TEST(Uncounted, ADoubledLineEndsThePrintWhereItDoesHarm) {
+  for (const char* mode : {"M82", "M83"}) {
+    const std::vector<std::string> program = moves(mode, 60);
+    const Outcome seen = outcome(program, [&](const std::string& command, std::string& bytes) {
+      if (command == program[30]) bytes += bytes;
+    });
+    EXPECT_EQ(seen.failure.has_value(), mode == std::string("M83"));
+    if (seen.failure)
+      EXPECT_THAT(seen.failure->what(), HasSubstr("is not where line"));
+    else
+      EXPECT_EQ(seen.executed.size(), program.size() + 1);
+  }
+}
+
+TEST(Uncounted, WhatAMacroDidNobodyKnows) {
+  std::vector<std::string> program = moves("M83", 20);
+  program.insert(program.begin() + 10, "M600");
+  program.insert(program.begin() + 10, "M240");
+  const Outcome seen = outcome(program, {}, "M240");
+  ASSERT_TRUE(seen.failure);
+  EXPECT_THAT(seen.failure->what(), HasSubstr("executed line 11 (M240): its answer got lost"));
+}
+
+// A flipped letter makes a command that is passed over.
+TEST(Uncounted, AGarbledCommandIsGivenAgain) {
+  const std::vector<std::string> program = moves("M83", 60);
+  bool done = false;
+  const Outcome seen = outcome(program, [&](const std::string& command, std::string& bytes) {
+    if (command == program[30] && !std::exchange(done, true)) bytes[bytes.find(" G") + 1] = 'W';
+  });
+  EXPECT_FALSE(seen.failure) << seen.failure->what();
+  EXPECT_EQ(seen.executed, program);
+}
+
+TEST(Uncounted, OneLineAtATimeWhateverTheWindow) {
+  const std::vector<std::string> program = moves("M83", 60);
+  bool done = false;
+  const Outcome seen = outcome(
+      program,
+      [&](const std::string& command, std::string& bytes) {
+        if (command == program[30] && !std::exchange(done, true)) bytes.clear();
+      },
+      "", 96);
+  EXPECT_FALSE(seen.failure) << seen.failure->what();
+  EXPECT_EQ(seen.executed, program);
+}
+
+// What does the same when it is executed twice in a row may be.
+std::vector<std::string> without_harmless_repeats(std::vector<std::string> executed) {
+  const auto repeats = [](const std::string& a, const std::string& b) {
+    return a == b && !a.starts_with("G1 ");
+  };
+  executed.erase(std::unique(executed.begin(), executed.end(), repeats), executed.end());
+  return executed;
+}
+
+// Whatever is lost or doubled, either way: each line once and in its order, or a cause.
+TEST(Uncounted, IsExactOrFails) {
+  const std::vector<std::string> program = moves("M83", 200);
+  int through = 0;
+  int failed = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Marlin firmware(Pace{1, true}, uncounted());
+    const bool doubles = seed % 2 == 0;
+    FaultyPort port(firmware,
+                    {.drop_chunk = doubles ? 0 : 0.01, .duplicate = doubles ? 0.004 : 0.0}, seed);
+    PrintControl control;
+    StreamOptions options = scenario_options();
+    options.timeout_s = 5;
+    const auto failure = print(port, true, text(program), control, {}, options);
+    const auto executed = without_harmless_repeats(only(port.executed(), program));
+    ++(failure ? failed : through);
+    if (failure) {
+      EXPECT_FALSE(failure->hint().empty());
+    } else {
+      EXPECT_EQ(executed, program) << seed;
+    }
+  }
+  EXPECT_GT(through, 10);
+  EXPECT_GT(failed, 5);
+}
+
+GcodePoint after(const std::vector<std::string>& lines) {
+  GcodePlace place;
+  GcodeTrace trace;
+  for (const std::string& line : lines) trace = place.follow(line);
+  return trace.after;
+}
+
+TEST(Place, IsWhatM114Tells) {
+  const GcodePoint nowhere;
+  EXPECT_EQ(after({"G28"}), nowhere);
+  EXPECT_EQ(after({"G92 E0", "G1 X1 Y2 Z3 E4"}), (GcodePoint{1.0, 2.0, 3.0, 4.0}));
+  EXPECT_EQ(after({"G1 X1 Y2 Z3", "G91", "M83", "G1 X1 E1"}), (GcodePoint{2.0, 2.0, 3.0}));
+  EXPECT_EQ(after({"G92 X0 E0", "M83", "G1 X1 E1", "G1 E-0.25"}),
+            (GcodePoint{1.0, std::nullopt, std::nullopt, 0.75}));
+  EXPECT_EQ(after({"G92 X0 E0", "G91", "G1 X1 E1"}), (GcodePoint{1.0}))
+      << "whether G91 is for E too depends on the firmware";
+  EXPECT_EQ(after({"G1 X1 Y1 E1", "M104 S200", "M117 X5", "M84", "T0"}), nowhere);
+  EXPECT_EQ(after({"G1 X1 Y1", "PRINT_START BED=60", "G1 Y2"}), (GcodePoint{std::nullopt, 2.0}));
+  EXPECT_EQ(after({"G20", "G1 X1"}), nowhere);
+}
+
+TEST(Place, IsReadFromAReport) {
+  EXPECT_EQ(read_gcode_point("X:1.500 Y:-2.00 Z:0.30 E:12.5 Count X:120 Y:0 Z:5"),
+            (GcodePoint{1.5, -2.0, 0.3, 12.5}));
+  EXPECT_EQ(read_gcode_point("ok X:1 Y:2?5 E:nan"), (GcodePoint{1.0}));
+}
+
+TEST(Place, TellsALinesFate) {
+  GcodePlace place;
+  place.follow("G92 X0 Y0 Z0 E0");
+  const GcodeTrace moved = place.follow("G1 X10");
+  EXPECT_EQ(fate_of(moved, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kTaken);
+  EXPECT_EQ(fate_of(moved, {0.0, 0.0, 0.0, 0.0}, true), GcodeFate::kMissed);
+  EXPECT_EQ(fate_of(moved, {10.0, 0.0, 0.0, 5.0}, true), GcodeFate::kUnknown);
+  const GcodeTrace heats = place.follow("M104 S200");
+  EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, true), GcodeFate::kTaken);
+  EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kMissed) << "again";
+  const GcodeTrace macro = place.follow("START_PRINT");
+  EXPECT_EQ(fate_of(macro, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kUnknown);
+}
+
+}  // namespace
+}  // namespace packmerger::test
