@@ -6,6 +6,7 @@
 
 #include "firmware_io/gcode.h"
 #include "firmware_io/s3g.h"
+#include "firmware_io/s3g_actions.h"
 #include "gcode/gcode_motion.h"
 
 namespace packmerger {
@@ -95,13 +96,12 @@ std::vector<TimeMark> time_marks(const GcodeCommands& commands) {
   return marks.take();
 }
 
-std::vector<TimeMark> time_marks(const std::vector<std::string_view>& actions,
-                                 const std::vector<std::size_t>& counted) {
+std::vector<TimeMark> time_marks(const s3g::Actions& actions) {
   Marks marks(actions.size());
   double expected_s = 0;
   for (std::size_t i = 0; i < actions.size(); ++i) {
     expected_s += seconds_of(actions[i]);
-    marks.add(counted[i], expected_s, i + 1 == actions.size());
+    marks.add(actions.done(i), expected_s, i + 1 == actions.size());
   }
   return marks.take();
 }

@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 namespace packmerger {
 
 class GcodeCommands;
+namespace s3g {
+class Actions;
+}
 
 // The program's own idea of its time: after `done` lines or bytes, expected_s seconds have passed.
 struct TimeMark {
@@ -23,9 +25,8 @@ bool has_slicer_marks(const GcodeCommands& commands);
 // lengths and speeds of its moves and its dwells; heating and homing count nothing. done: commands.
 std::vector<TimeMark> time_marks(const GcodeCommands& commands);
 
-// From the moves and delays of an x3g program. done: counted[i] with action i.
-std::vector<TimeMark> time_marks(const std::vector<std::string_view>& actions,
-                                 const std::vector<std::size_t>& counted);
+// From the moves and delays of an x3g program. done: its bytes.
+std::vector<TimeMark> time_marks(const s3g::Actions& actions);
 
 class RemainingTime {
  public:

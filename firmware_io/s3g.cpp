@@ -133,25 +133,17 @@ std::size_t action_length(std::string_view bytes) {
   return length > bytes.size() ? 0 : length;
 }
 
-std::vector<std::string_view> split_actions(std::string_view program) {
-  std::vector<std::string_view> actions;
-  std::size_t offset = 0;
-  while (offset < program.size()) {
-    const std::string_view rest = program.substr(offset);
-    const std::uint8_t action = byte_at(rest, 0);
-    const std::size_t length = action_length(rest);
-    const bool known =
-        fixed_length(action) > 0 || action == 0x88 || action == 0x95 || action == kBuildStart;
-    if (!known) refuse(offset, "holds the unknown action " + hex(action));
-    if (action == kFactoryReset) refuse(offset, "would reset the printer to factory settings");
-    if (length == 0) refuse(offset, "is cut short in action " + hex(action));
-    if (length > kMaxPayload) refuse(offset, "holds an action too long for a packet");
-    actions.push_back(rest.substr(0, length));
-    offset += length;
-  }
-  if (actions.empty())
-    throw Error(Fault::kBadInput, "The x3g program is empty", "Prepare the model again.");
-  return actions;
+std::size_t checked_action_length(std::string_view program, std::size_t offset) {
+  const std::string_view rest = program.substr(offset);
+  const std::uint8_t action = byte_at(rest, 0);
+  const std::size_t length = action_length(rest);
+  const bool known =
+      fixed_length(action) > 0 || action == 0x88 || action == 0x95 || action == kBuildStart;
+  if (!known) refuse(offset, "holds the unknown action " + hex(action));
+  if (action == kFactoryReset) refuse(offset, "would reset the printer to factory settings");
+  if (length == 0) refuse(offset, "is cut short in action " + hex(action));
+  if (length > kMaxPayload) refuse(offset, "holds an action too long for a packet");
+  return length;
 }
 
 std::string build_start(std::string_view name) {

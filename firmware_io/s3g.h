@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace packmerger::s3g {
 
@@ -96,8 +95,9 @@ class ReplyReader {
 // The length of the action that `bytes` begins with; 0 for an action that is unknown or cut short.
 std::size_t action_length(std::string_view bytes);
 
-// The actions of an x3g program in order, as views into it. Throws Error{kBadInput} as check_x3g().
-std::vector<std::string_view> split_actions(std::string_view program);
+// The same of the action at `offset`, which lies in the program. Throws Error{kBadInput} as
+// check_x3g() promises.
+std::size_t checked_action_length(std::string_view program, std::size_t offset);
 
 // Payload of a build start; the name is cut to what a packet holds.
 std::string build_start(std::string_view name);

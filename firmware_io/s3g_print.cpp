@@ -63,15 +63,14 @@ void Print::connect(double boot_wait_s, const std::string& machine) {
   channel_.take_surplus();
 }
 
-void Print::run(const std::vector<std::string_view>& actions,
-                const std::vector<std::size_t>& counted) {
+void Print::run(const Actions& actions) {
   actions_ = &actions;
   note_heaters();
   reporter_.state(PrintState::kPrinting);
   watched_at_s_ = channel_.now_s();
   for (std::size_t i = 0; i < actions.size(); ++i) {
     send(i);
-    reporter_.done(counted[i]);
+    reporter_.done(actions.done(i));
   }
   finish();
 }

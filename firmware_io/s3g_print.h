@@ -7,10 +7,10 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "firmware_io/conversation.h"
 #include "firmware_io/print_state.h"
+#include "firmware_io/s3g_actions.h"
 #include "firmware_io/s3g_axes.h"
 #include "firmware_io/s3g_buffer.h"
 #include "firmware_io/s3g_channel.h"
@@ -28,9 +28,9 @@ class Print {
   void connect(double boot_wait_s, const std::string& machine);
 
   // Streams the actions, build start and build end among them, and returns when the printer says
-  // that its build is finished. counted[i]: bytes of the program done with action i. Throws
-  // Error{kIo}, or Error{kInterrupted} after a cancel that the printer carried out.
-  void run(const std::vector<std::string_view>& actions, const std::vector<std::size_t>& counted);
+  // that its build is finished. Throws Error{kIo}, or Error{kInterrupted} after a cancel that the
+  // printer carried out.
+  void run(const Actions& actions);
 
   // Best effort after a failure: stops the machine, heaters off.
   void abort_quietly();
@@ -67,7 +67,7 @@ class Print {
   Channel& channel_;
   Reporter& reporter_;
   PrintControl& control_;
-  const std::vector<std::string_view>* actions_ = nullptr;
+  const Actions* actions_ = nullptr;
 
   Buffer buffer_;                  // with all that was accepted
   Axes axes_;                      // after all that was accepted

@@ -10,7 +10,7 @@
 #include "firmware_io/gcode.h"
 #include "firmware_io/gcode_link.h"
 #include "firmware_io/remaining_time.h"
-#include "firmware_io/s3g.h"
+#include "firmware_io/s3g_actions.h"
 #include "firmware_io/s3g_link.h"
 #include "gcode/program_text.h"
 #include "job/comparison_table.h"
@@ -75,10 +75,7 @@ void judge_moves(ReadyProgram& program, std::string_view gcode) {
                                        fault->command.substr(0, 80), fault->what)});
 }
 
-double seconds_of_x3g(std::string_view x3g) {
-  const std::vector<std::string_view> actions = s3g::split_actions(x3g);
-  return seconds_of(time_marks(actions, std::vector<std::size_t>(actions.size())));
-}
+double seconds_of_x3g(std::string_view x3g) { return seconds_of(time_marks(s3g::Actions(x3g))); }
 
 void convert(ReadyProgram& program, const std::string& gcode, const Progress& progress) {
   if (const std::optional<std::string> missing = missing_in_s3g_start(gcode))

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "firmware_io/gcode.h"
 #include "firmware_io/s3g.h"
+#include "firmware_io/s3g_actions.h"
 #include "firmware_io/usb_printer.h"
 
 namespace {
@@ -55,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     default:
       refused_or_read([&] {
         std::size_t sum = 0;
-        for (const std::string_view action : s3g::split_actions(bytes)) sum += action.size();
+        for (const std::string_view action : s3g::Actions(bytes)) sum += action.size();
         if (sum != bytes.size()) std::abort();  // every byte is sent, and once
       });
   }

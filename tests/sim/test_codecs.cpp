@@ -7,6 +7,7 @@
 #include "firmware_io/gcode.h"
 #include "firmware_io/gcode_link.h"
 #include "firmware_io/s3g.h"
+#include "firmware_io/s3g_actions.h"
 #include "firmware_io/s3g_link.h"
 #include "sim/programs.h"
 
@@ -175,7 +176,7 @@ TEST(S3gCodec, ReadsRepliesInPiecesAndBetweenNoise) {
 TEST(S3gCodec, SplitsAProgram) {
   const X3gProgram program = x3g_program(20);
   std::vector<std::string> actions;
-  for (std::string_view action : s3g::split_actions(program.bytes))
+  for (std::string_view action : s3g::Actions(program.bytes))
     actions.push_back(hex(std::string(action)));
   EXPECT_EQ(actions, program.actions);
 }
@@ -196,7 +197,7 @@ TEST(S3gCodec, AnyBytesAreSplitOrRefused) {
   EXPECT_TRUE(rc::check([](const std::string& bytes) {
     try {
       std::size_t total = 0;
-      for (std::string_view action : s3g::split_actions(bytes)) total += action.size();
+      for (std::string_view action : s3g::Actions(bytes)) total += action.size();
       RC_ASSERT(total == bytes.size());
     } catch (const Error& error) {
       RC_ASSERT(error.fault() == Fault::kBadInput);

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/process.h"
 #include "firmware_io/s3g.h"
+#include "firmware_io/s3g_actions.h"
 
 namespace packmerger::test {
 namespace {
@@ -59,7 +60,7 @@ class GpxMachine : public ::testing::TestWithParam<std::vector<std::string>> {
 TEST_P(GpxMachine, FramesTheSameBytes) {
   std::string ours;
   const std::string program = made(false);
-  for (const std::string_view action : s3g::split_actions(program)) ours += s3g::packet(action);
+  for (const std::string_view action : s3g::Actions(program)) ours += s3g::packet(action);
   EXPECT_GT(ours.size(), 10000U);
   EXPECT_TRUE(ours == made(true)) << "differs from gpx -F";
 }
@@ -82,8 +83,7 @@ std::string as_dumped(std::string_view action) {
 TEST_P(GpxMachine, ReadsTheSameCommands) {
   const std::string program = made(false);
   std::vector<std::string> ours;
-  for (const std::string_view action : s3g::split_actions(program))
-    ours.push_back(as_dumped(action));
+  for (const std::string_view action : s3g::Actions(program)) ours.push_back(as_dumped(action));
 
   const std::string dump = run(folder() / "bare", {"s3gdump", "job.x3g"});
   const std::regex command(R"((?:^|\n)\d+: (\(\d+\))(?: Move to( \([^)]*\)), DDA)?)");

@@ -1,9 +1,12 @@
-// The lines of a print: what they are after all that is done to them, and what they take.
+// The lines and actions of a print: what they are after all that is done to them, and what they
+// take.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "firmware_io/gcode.h"
 #include "firmware_io/gcode_script.h"
+#include "firmware_io/s3g_actions.h"
+#include "sim/programs.h"
 
 namespace packmerger::test {
 namespace {
@@ -47,6 +50,31 @@ TEST(GcodeScript, TakesEightBytesALine) {
   EXPECT_EQ(script.bytes(), 8 * kLines);
   script.insert(kLines / 2, {"M400"});
   EXPECT_LT(script.bytes(), 8 * kLines + 1000);
+}
+
+TEST(X3gActions, TakeFourBytesEach) {
+  const X3gProgram program = x3g_program(10'000);
+  const s3g::Actions actions(program.bytes);
+  ASSERT_EQ(actions.size(), program.actions.size());
+  EXPECT_EQ(actions.bytes(), 4 * actions.size());
+}
+
+TEST(X3gActions, AreCompletedWhereAStartOrAnEndIsMissing) {
+  const std::string start("\x99\0\0\0\0a\0", 7);
+  const std::string delay("\x85\x01\0\0\0", 5);
+  const std::string end("\x9A\0", 2);
+  for (const bool has_start : {true, false})
+    for (const bool has_end : {true, false}) {
+      const std::string program = (has_start ? start : "") + delay + (has_end ? end : "");
+      s3g::Actions actions(program);
+      actions.complete("a");
+      std::vector<std::string> all;
+      for (const std::string_view action : actions) all.emplace_back(action);
+      EXPECT_THAT(all, ElementsAre(start, delay, end));
+      EXPECT_EQ(actions.done(0), has_start ? start.size() : 0);
+      EXPECT_EQ(actions.done(1), program.size() - (has_end ? end.size() : 0));
+      EXPECT_EQ(actions.done(2), program.size());
+    }
 }
 
 }  // namespace
