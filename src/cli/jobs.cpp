@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "base/duration.h"
+#include "cli/checks.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
 #include "job/comparison_table.h"
@@ -210,20 +211,18 @@ void add_jobs(CLI::App& program) {
   };
   CLI::App* list_all = action("list", "All jobs that have not ended, then the newest that have");
   list_all->add_option("--limit", arguments->limit, "how many of those that have ended")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->capture_default_str();
   list_all
       ->add_option("--before", arguments->before,
                    "only jobs that ended before the one of this number")
-      ->check(CLI::PositiveNumber);
+      ->check(counted_from_one());
   list_all->callback([arguments] {
     list(*arguments);
     tell_storage(*arguments);
   });
   const auto with_id = [&](CLI::App* one) {
-    one->add_option("ID", arguments->id, "the job's number")
-        ->required()
-        ->check(CLI::PositiveNumber);
+    one->add_option("ID", arguments->id, "the job's number")->required()->check(counted_from_one());
     return one;
   };
   with_id(action("show", "Everything about one job"))->callback([arguments] { show(*arguments); });

@@ -1,9 +1,11 @@
 // packmerger VERB …: parses the command line, runs one verb, and turns an Error into its exit code.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,35 +27,44 @@ int report(const Error& error) {
   return error.exit_code();
 }
 
-// A word where a verb belongs, which CLI11 would only call unexpected.
-void check_verbs(const CLI::App& program, int argc, char** argv) {
+std::vector<std::string> verbs_of(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::App* one : verb.get_subcommands({})) names.push_back(one->get_name());
+  return names;
+}
+
+// What is spoken to: "packmerger jobs list". Throws where a verb is missing, or another word stands
+// in its place.
+std::string spoken_to(const CLI::App& program, int argc, char** argv) {
   const CLI::App* verb = &program;
   std::string spoken = "packmerger";
-  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
-    std::vector<std::string> known;
-    for (const CLI::App* one : verb->get_subcommands({})) known.push_back(one->get_name());
-    if (known.empty()) return;
-    if (std::find(known.begin(), known.end(), argv[i]) == known.end())
-      throw Error(Fault::kUsage, spoken + " has no verb \"" + argv[i] + "\"",
-                  did_you_mean(argv[i], known) + "`" + spoken + " --help` lists its verbs.");
-    verb = verb->get_subcommand(argv[i]);
-    spoken += std::string(" ") + argv[i];
+  int next = 1;
+  for (; next < argc && argv[next][0] != '-'; ++next) {
+    const std::vector<std::string> known = verbs_of(*verb);
+    if (known.empty()) return spoken;
+    if (std::find(known.begin(), known.end(), argv[next]) == known.end())
+      throw Error(Fault::kUsage, spoken + " has no verb \"" + argv[next] + "\"",
+                  did_you_mean(argv[next], known) + "`" + spoken + " --help` lists its verbs.");
+    verb = verb->get_subcommand(argv[next]);
+    spoken += std::string(" ") + argv[next];
   }
+  if (const std::vector<std::string> known = verbs_of(*verb); next == argc && !known.empty())
+    throw Error(
+        Fault::kUsage, spoken + " needs a verb",
+        fmt::format("{}. `{} --help` tells what each does.", fmt::join(known, ", "), spoken));
+  return spoken;
 }
 
 int run(int argc, char** argv) {
   CLI::App program;
   packmerger::cli::add_verbs(program);
-  check_verbs(program, argc, argv);
+  const std::string spoken = spoken_to(program, argc, argv);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version
     return program.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    std::ostringstream text;
-    program.exit(error, std::cout, text);
-    std::cerr << printable_lines(text.str());
-    return static_cast<int>(Fault::kUsage);
+    throw Error(Fault::kUsage, error.what(), "`" + spoken + " --help` tells how it is used.");
   }
   std::cout.flush();
   if (!std::cout)

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <map>
 
 #include "base/error.h"
 #include "base/names.h"
+#include "cli/checks.h"
 
 namespace packmerger::cli {
 namespace {
@@ -16,31 +16,22 @@ const std::map<std::string, double> kUnits{{"mm", 1}, {"cm", 10}, {"m", 1000}, {
 
 constexpr int kMostCopies = 1000;
 
-// CLI11's own checks let NaN and infinity through.
-const CLI::Validator kFinite(
-    [](const std::string& text) {
-      double value = 0;
-      const bool finite = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-      return finite ? std::string() : "\"" + text + "\" is not a finite number";
-    },
-    "", "finite");
-
 }  // namespace
 
 void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
   verb.add_option("MODEL", arguments.models, "STL, OBJ, PLY, OFF or 3MF; several share the tray")
       ->required();
   verb.add_option("--copies", arguments.copies, "of each model; they share the trays")
-      ->check(CLI::Range(1, kMostCopies))
+      ->check(whole_number(1, kMostCopies))
       ->capture_default_str();
   verb.add_option("--units", arguments.units, "what the file's numbers are, where it does not say")
       ->check(CLI::IsMember({"mm", "cm", "m", "in"}))
       ->capture_default_str();
   CLI::Option* scale =
       verb.add_option("--scale", arguments.scale, "multiplies the model, on top of its unit")
-          ->check(CLI::PositiveNumber & kFinite);
+          ->check(above_zero());
   verb.add_option("--size", arguments.size_mm, "scales the longest side to this many mm")
-      ->check(CLI::PositiveNumber & kFinite)
+      ->check(above_zero())
       ->excludes(scale);
   verb.add_flag("--no-split", arguments.no_split,
                 "packs the models as they are: neither hollowed nor divided");
@@ -48,7 +39,7 @@ void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
   verb.add_option("--seed", arguments.seed, "repeats a result; another seed gives another one")
       ->capture_default_str();
   verb.add_option("--budget", arguments.budget_s, "seconds for the packing; 0: until it is done")
-      ->check(CLI::NonNegativeNumber & kFinite)
+      ->check(zero_or_more())
       ->capture_default_str();
   verb.add_option("--set", arguments.settings, "any setting of the profile")
       ->type_name("KEY=VALUE")

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "base/duration.h"
+#include "cli/checks.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
 
@@ -111,7 +112,7 @@ void add_printers(CLI::App& program) {
     one->add_option("NAME", arguments->name, "the printer's name")->required();
     if (name == std::string_view("answer"))
       one->add_option("CHOICE", arguments->choice, "one of its choices, counted from 0")
-          ->check(CLI::Range(0, 99))
+          ->check(whole_number(0, 99))
           ->capture_default_str();
     one->callback([arguments, name = std::string(name)] { change(*arguments, name); });
   }

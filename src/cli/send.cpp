@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/names.h"
+#include "cli/checks.h"
 #include "cli/daemon_verb.h"
 #include "cli/print_dialogue.h"
 #include "cli/verb.h"
@@ -120,7 +121,7 @@ void add_send(CLI::App& program) {
                                        "tcp:HOST:PORT; default: the one its USB id is found at")
                           ->type_name("PORT");
   CLI::Option* tray = verb->add_option("--tray", arguments->tray, "which tray of several")
-                          ->check(CLI::PositiveNumber);
+                          ->check(counted_from_one());
   verb->add_option("--to", arguments->to,
                    "the folder to hand over in, for printers that take no job over a cable")
       ->type_name("FOLDER")

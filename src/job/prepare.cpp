@@ -79,7 +79,8 @@ std::vector<TrayFiles> programs(Job& job, const std::vector<Tray>& trays,
                                 const Progress& progress) {
   std::vector<TrayFiles> files;
   for (std::size_t i = 0; i < trays.size(); ++i) {
-    progress.report("slicing", static_cast<double>(i) / static_cast<double>(trays.size()));
+    if (job.profile.is_sliced())
+      progress.report("slicing", static_cast<double>(i) / static_cast<double>(trays.size()));
     std::string name = std::filesystem::path(job.inputs.front().file).stem().string();
     if (trays.size() > 1) name += "-" + std::to_string(i + 1);
     std::optional<Program> program = make_program(job.profile, trays[i], name, progress);

@@ -68,6 +68,21 @@ class Usage(CommandLine):
                     self.expect(2, "prepare", self.sphere, "--out", self.folder / "job").err):
             self.assertIn("marlin, objet30, replicator, uprint", err)
 
+    def test_what_is_missing_is_named(self):
+        for spoken, verbs in ((["packmerger"], "prepare, compare, send"), (["packmerger", "jobs"], "list, show"),
+                              (["packmerger", "printers"], "list, ")):
+            err = self.expect(2, *spoken[1:]).err
+            self.assertIn(f"error: {' '.join(spoken)} needs a verb.", err)
+            self.assertIn(verbs, err)
+        self.assertEqual(self.expect(2, "compare").err,
+                         "error: MODEL is required.\nhint: `packmerger compare --help` tells how it is used.\n")
+
+    def test_values_that_are_wrong_are_told_in_words(self):
+        for wrong, told in ((("jobs", "approve", "bunny"), 'ID: "bunny" is not a whole number above 0'),
+                            (("compare", self.sphere, "--size", "3cm"), '--size: "3cm" is not a number above 0'),
+                            (("compare", self.sphere, "--copies", "0"), '--copies: "0" is not a whole number from 1 to 1000')):
+            self.assertIn(f"error: {told}.\n", self.expect(2, *wrong).err)
+
     def test_a_daemon_that_is_not_there_may_be_the_package_s(self):
         err = self.expect(69, "jobs", "list", "--socket", self.folder / "none.sock").err
         self.assertIn("/run/packmerger/packmergerd.sock", err)
@@ -180,6 +195,7 @@ class Jobs(CommandLine):
         self.assertEqual(result.code, 0, str(result))
         told = json.loads(result.out)
         self.assertEqual((told["seed"], told["settings"]["gap_mm"], told["packing"]["weight"]), (7, 2.5, 0.5))
+        self.assertNotIn("slicing", result.err, "this printer's own software does that")
         self.assertAlmostEqual(told["inputs"][0]["scale"], 33 / 40, places=6)
         self.assertEqual(check(self.folder / "job", [self.sphere]).failures(), [])
 
