@@ -77,7 +77,7 @@ const JOB_BADGES: Record<Job['state'], Badge> = {
   preparing: { tone: 'busy', text: 'Preparing' },
   ready: { tone: 'attention', text: 'Ready to approve' },
   approved: { tone: 'calm', text: 'Approved' },
-  sending: { tone: 'busy', text: 'Printing' },
+  sending: { tone: 'busy', text: 'Sending' },
   handed_over: { tone: 'good', text: 'Handed over' },
   done: { tone: 'good', text: 'Printed' },
   failed: { tone: 'bad', text: 'Failed' },
@@ -133,6 +133,10 @@ export function nextStep(job: Job): string {
     case null: return '';
   }
 }
+
+// What becomes of a model that arrives.
+export const afterArrival = ({ approve }: Printer): string => `it is prepared, and then ${
+  approve === 'auto' ? 'goes to the printer by itself where nothing speaks against it' : 'waits here for you to approve it'}.`;
 
 // The question before a tap starts a print.
 export function startInWords({ job, name, printer, tray, trays, time_s, doubt }: Start) {

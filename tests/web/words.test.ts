@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
-import { bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords } from '../../src/web/words';
-import { ownEstimate, type Job } from '../../src/web/daemon/types';
+import { afterArrival, bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords } from '../../src/web/words';
+import { ownEstimate, type Job, type Printer } from '../../src/web/daemon/types';
 
 const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
 
@@ -62,4 +62,10 @@ test('a disk is spoken of only where somebody has to do something', () => {
   expect(storageInWords(storage)).toBe('');
   expect(plain(storageInWords({ ...storage, low: true }))).toMatch(/^The daemon’s disk has only 768 MiB left/);
   expect(storageInWords({ ...storage, announced: { from_s: 0, jobs: 1 } })).toMatch(/1970.* on the files of 1 ended job are deleted \(keep_days = 90/);
+});
+
+test('what is sent is not said to be printed, and what waits for nobody is not said to wait', () => {
+  expect(jobBadge({ state: 'sending', progress: null } as Job).text).toBe('Sending');
+  expect(afterArrival({ approve: 'auto' } as Printer)).toContain('by itself');
+  expect(afterArrival({ approve: 'ask' } as Printer)).toContain('waits here for you to approve');
 });

@@ -5,7 +5,7 @@ import { Uploads } from './uploads';
 import { hasEnded, type Job } from '../daemon/types';
 import type { Known } from '../store';
 import { Empty } from '../ui/bits';
-import { count, jobBadge } from '../words';
+import { afterArrival, count, jobBadge } from '../words';
 
 // Those that wait for a person first, then those at work, then the others in the order they came.
 function inOrder(jobs: Job[]): Job[] {
@@ -56,8 +56,7 @@ function NoJobs({ known }: { known: Known }) {
   if (first === undefined) return <Empty title="Nothing to do">Jobs appear here once there is a printer.</Empty>;
   return (
     <Empty title="Nothing to do">
-      Drop a model on this page, or copy it into <code>{first.folder}</code>: it is hollowed, divided and packed, and then
-      waits here for you to approve it.
+      Drop a model on this page, or copy it into <code>{first.folder}</code>: {afterArrival(first)}
     </Empty>
   );
 }
