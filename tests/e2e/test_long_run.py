@@ -16,7 +16,7 @@ import program
 from web_daemon import free_port
 from workshop import SETTINGS, Workshop, gcode
 
-JOBS = int(os.environ.get("PACKMERGER_JOBS", 200))
+JOBS = int(os.environ.get("PACKMERGER_JOBS", 60))
 PRINTERS = 4
 ANSWER_S = 0.05  # p99; a test allows tenfold
 MOST_GROWTH_BYTES = 8 << 20  # from a fifth of the jobs to all of them

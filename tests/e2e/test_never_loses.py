@@ -16,8 +16,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import program
 from workshop import Workshop, gcode
 
-KILLS = int(os.environ.get("PACKMERGER_KILLS", 50))
-DISK_FAULTS = int(os.environ.get("PACKMERGER_DISK_FAULTS", 25))
+KILLS = int(os.environ.get("PACKMERGER_KILLS", 15))
+DISK_FAULTS = int(os.environ.get("PACKMERGER_DISK_FAULTS", 10))
 SEED = int(os.environ.get("PACKMERGER_SEED", 1))
 DAY_S = 86400
 READY_S = 2  # after a kill; a test allows tenfold

@@ -28,7 +28,7 @@ class Path(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         self.ball = self.folder / "ball.stl"
-        self.ball.write_bytes(stl(sphere()))
+        self.ball.write_bytes(stl(sphere(radius=12)))
 
     def simulated(self, profile):
         """A simulated printer's port and the file of what it executes."""
