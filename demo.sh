@@ -7,20 +7,29 @@ set -euo pipefail
 cd "$(dirname "$0")"
 source src/install/install.sh
 
-say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
+case ${1:-} in
+  "" | web) ;;
+  *) echo "usage: ./demo.sh [web]" >&2; exit 2 ;;
+esac
+
+bold='' plain=''
+[ -t 1 ] && bold=$'\033[1m' plain=$'\033[0m'
+say() { printf '\n%s%s%s\n' "$bold" "$*" "$plain"; }
 
 [ -x build/bin/packmerger ] || say "The first run installs packages (a few minutes) and builds everything (about twenty minutes on two cores, ten on four); the next take about a minute"
 install_packages
 install_npm_packages
 say "Building"
 cmake --preset release >/dev/null
-cmake --build build --target packmerger packmergerd packmerger-tetgen page | tail -n 1
+build=(cmake --build build --target packmerger packmergerd packmerger-tetgen page)
+# At a terminal one line counts the steps.
+if [ -t 1 ]; then "${build[@]}"; else "${build[@]}" | tail -n 1; fi
 
 export PATH=$PWD/build/bin:$PATH
 demo=$PWD/build/demo
 rm -rf "$demo"
 mkdir -p "$demo/state" "$demo/objet30" "$demo/replicator" "$demo/objet-studio"
-node tests/fixtures/bunny_obj.js "$demo/bunny.obj"
+node tests/fixtures/bunny_obj.js "$demo/bunny.obj" standing
 node tests/fixtures/arch_obj.js "$demo/arch.obj"
 
 cleanup() {
@@ -70,20 +79,20 @@ export PACKMERGER_SOCKET=$demo/state/packmergerd.sock
 until packmerger printers list >/dev/null 2>&1; do kill -0 "$daemon"; sleep 0.1; done
 packmerger printers list
 
-# field JOB NAME: one value of the job's JSON.
-field() {
-  packmerger jobs show "$1" --json |
-    node -e 'const job = JSON.parse(require("fs").readFileSync(0)); console.log(job[process.argv[1]] ?? "")' "$2"
+# fields JOB NAME...: values of the job's JSON, one a line.
+fields() {
+  packmerger jobs show "$1" --json | node -e 'const job = JSON.parse(require("fs").readFileSync(0));
+    for (const name of process.argv.slice(1)) console.log(job[name] ?? "")' "${@:2}"
 }
 
 # wait_for JOB STATE...: shows the job's progress until it is in one of the states.
 wait_for() {
-  local job=$1 state status shown=
+  local job=$1 told state status shown=
   shift
   while true; do
     kill -0 "$daemon"
-    state=$(field "$job" state 2>/dev/null || true)
-    status=$(field "$job" status 2>/dev/null || true)
+    mapfile -t told < <(fields "$job" state status 2>/dev/null)
+    state=${told[0]:-} status=${told[1]:-}
     [ "$status" = "$shown" ] || echo "  $status"
     shown=$status
     case " $* " in *" $state "*) return 0 ;; esac
@@ -112,24 +121,24 @@ say "Approving it and printing every tray on the simulated Replicator"
 packmerger jobs approve 2
 wait_for 2 done
 # The record holds one action a line, in hex; 9a ends a build (docs/PROTOCOLS.md), one for each tray.
-trays=$(field 2 trays)
+trays=$(fields 2 trays)
 until [ "$(grep -c '^9a' "$demo/printed.txt")" -ge "$trays" ]; do kill -0 "$printer"; sleep 0.1; done
 echo "Trays printed: $trays of $trays. The printer recorded $(wc -l < "$demo/printed.txt") commands."
 
 say "Where everything lies"
 handed=$(find "$demo/objet-studio" -mindepth 1 -maxdepth 1 -type d)
-bunny=$(field 1 folder)
-arch=$(field 2 folder)
+bunny=$(fields 1 folder)
+arch=$(fields 2 folder)
 cat <<EOF
   the bunny     picture       $bunny/preview.png
                 3D scenes     $bunny/preview.glb, $bunny/assembly.glb
                 handed over   $handed
-                your model    $(field 1 filed)
+                your model    $(fields 1 filed)
   the arch      picture       $arch/preview.png
                 3D scenes     $arch/preview.glb, $arch/assembly.glb
-                programs      $(cd "$arch" && printf "$arch/%s " program*.x3g)
+                programs      $(printf '%s\n' "$arch"/program*.x3g | paste -sd ' ')
                 print record  $demo/printed.txt
-                your model    $(field 2 filed)
+                your model    $(fields 2 filed)
 EOF
 if [ "${1:-}" = web ]; then
   say "The page: $(packmerger keys link 2>/dev/null)"
