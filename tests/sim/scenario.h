@@ -43,6 +43,15 @@ inline std::size_t count(const std::vector<std::string>& list, const std::string
   return static_cast<std::size_t>(std::count(list.begin(), list.end(), text));
 }
 
+// What the machine says in the tenth of a second after the chunk with this number gets lost; what
+// it tells of its own goes on behind that.
+inline void lose_answers_behind(FaultyPort& port, std::size_t chunk) {
+  port.on_step = [&port, chunk, since_s = simulated::kNever](std::size_t written) mutable {
+    if (written == chunk) since_s = std::min(since_s, port.now_s());
+    port.lose_answers = written == chunk && port.now_s() < since_s + 0.1;
+  };
+}
+
 // Those of `executed` that belong to the program.
 inline std::vector<std::string> only(const std::vector<std::string>& executed,
                                      const std::vector<std::string>& program) {

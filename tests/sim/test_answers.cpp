@@ -85,11 +85,7 @@ TEST(Life, ALostOkIsNoticedWhateverThePrinterTellsUnasked) {
     simulated::set_trait(traits, trait);
     Marlin firmware(Pace{1, true}, traits);
     FaultyPort port(firmware);
-    double lost_at_s = simulated::kNever;
-    port.on_step = [&](std::size_t written) {
-      if (written == 20) lost_at_s = std::min(lost_at_s, port.now_s());
-      port.lose_answers = written == 20 && port.now_s() < lost_at_s + 0.1;
-    };
+    lose_answers_behind(port, 20);
     PrintControl control;
     const auto failure = print(port, true, joined(gcode_program(200)), control);
     EXPECT_FALSE(failure) << failure->what();

@@ -203,12 +203,7 @@ TEST(Marlin, ALostOkWhileHeatingIsNoticedInSpiteOfReports) {
   traits.reports_unasked = true;
   Marlin firmware(Pace{1, true}, traits);
   FaultyPort port(firmware);
-  // M115, M27 and M110 take four chunks; then come M104 and M190.
-  double sent_at_s = simulated::kNever;
-  port.on_step = [&](std::size_t written) {
-    if (written == 6) sent_at_s = std::min(sent_at_s, port.now_s());
-    port.lose_answers = written == 6 && port.now_s() < sent_at_s + 0.1;
-  };
+  lose_answers_behind(port, 6);  // M115, M27 and M110 take four chunks; then come M104 and M190
   PrintControl control;
   const auto failure = print(port, true, joined(gcode_program(20)), control);
   EXPECT_FALSE(failure) << failure->what();
