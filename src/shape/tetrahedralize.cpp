@@ -97,6 +97,15 @@ std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress&
   return read_tetgen_output(to);
 }
 
+// TetGen makes points one that are nearer than 1e-8 of the size. Where bodies were united, points may
+// be nearer, and then what does not cross is refused: it is tried again with all points kept apart.
+std::optional<TetgenOutput> run_keeping_points(TetgenInput input, const Progress& progress) {
+  auto output = run_tetgen(input, progress);
+  if (output || input.flags.find('T') != input.flags.npos) return output;
+  input.flags += "T1e-13";
+  return run_tetgen(input, progress);
+}
+
 std::array<int, 3> sorted(std::array<int, 3> corners) {
   std::sort(corners.begin(), corners.end());
   return corners;
@@ -148,7 +157,7 @@ std::optional<TetMesh> tetrahedralize(const Shell& shell, const ShapeSettings& s
       shell.volume_mm3 * std::min(settings.max_tetrahedron_fraction,
                                   1 / (kPerCluster * std::max(1, settings.clusters)));
   check_facets(shell, max_volume);
-  auto output = run_tetgen(input_for(shell, settings, max_volume), progress);
+  auto output = run_keeping_points(input_for(shell, settings, max_volume), progress);
   if (!output) return std::nullopt;
   progress.report("making tetrahedra", 0.8);
   std::optional<TetMesh> mesh = mesh_of(std::move(*output));

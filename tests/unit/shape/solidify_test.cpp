@@ -174,6 +174,42 @@ TEST(Tetrahedralize, ASurfaceThatCrossesItselfIsAnOrdinaryOutcome) {
   EXPECT_FALSE(tetrahedralize(solid_shell(crossing, ShapeSettings()), ShapeSettings(), Progress()));
 }
 
+// A fin over an edge, whose two sides begin nearer to one another than TetGen keeps points apart by
+// itself. Cutting bodies where they cross leaves such things.
+TriangleSoup with_fin(TriangleSoup soup) {
+  const auto [a, b, c] = soup.triangles[0];
+  const auto other =
+      std::find_if(soup.triangles.begin() + 1, soup.triangles.end(), [&](const auto& triangle) {
+        return std::count(triangle.begin(), triangle.end(), a) +
+                   std::count(triangle.begin(), triangle.end(), b) ==
+               2;
+      });
+  const int d = (*other)[0] + (*other)[1] + (*other)[2] - a - b;
+  const Vec3 middle = (soup.points[a] + soup.points[b]) / 2;
+  const int before = static_cast<int>(soup.points.size());
+  const int behind = before + 1;
+  const int tip = before + 2;
+  soup.points.push_back(middle + 1e-9 * (soup.points[c] - middle));
+  soup.points.push_back(middle + 1e-9 * (soup.points[d] - middle));
+  soup.points.push_back(1.1 * middle);
+  soup.triangles[0] = {a, before, c};
+  *other = {b, behind, d};
+  for (const std::array<int, 3> triangle :
+       {std::array{before, b, c}, std::array{behind, a, d}, std::array{before, a, tip},
+        std::array{b, before, tip}, std::array{behind, b, tip}, std::array{a, behind, tip}})
+    soup.triangles.push_back(triangle);
+  return soup;
+}
+
+TEST(Tetrahedralize, PointsNextToOneAnotherStayApart) {
+  const Mesh mesh = closed_mesh(with_fin(fixtures::sphere(20, 2)));
+  ASSERT_FALSE(self_intersects(mesh));
+  const Shell shell = solid_shell(mesh, ShapeSettings());
+  const auto tets = tetrahedralize(shell, ShapeSettings(), Progress());
+  ASSERT_TRUE(tets);
+  EXPECT_NEAR(total_volume_mm3(*tets), shell.volume_mm3, 1e-6 * shell.volume_mm3);
+}
+
 TEST(Tetrahedralize, CanBeInterrupted) {
   const std::atomic<bool> cancelled{true};
   const Shell shell = solid_shell(closed_mesh(fixtures::cube(10)), ShapeSettings());
