@@ -96,6 +96,17 @@ TEST(GcodeCodec, ReadsReplies) {
   EXPECT_EQ(read_gcode_reply("//action:prompt_begin Change tool").text, "Change tool");
 }
 
+// Steps are counted by letters that are heaters' too: no bed has 9864 °C, and M105 is not answered.
+TEST(GcodeCodec, APositionOnOneLineIsNoTemperature) {
+  const GcodeReply reply =
+      read_gcode_reply("ok X:12.00 Y:3.00 Z:0.30 E:0.00 Count: A:0 B:9864 C:2460");
+  EXPECT_EQ(reply.kind, GcodeReplyKind::kOk);
+  EXPECT_TRUE(reply.has_position);
+  EXPECT_FALSE(reply.has_temperature);
+  EXPECT_TRUE(reply.heaters.empty());
+  EXPECT_EQ(kind("X:12.00 Y:3.00 Z:0.30 E:0.00 Count A:0 B:9864"), GcodeReplyKind::kPosition);
+}
+
 // Marlin's, Repetier's and Klipper's words for having stopped.
 TEST(GcodeCodec, WordsOfAStop) {
   for (const char* line :
