@@ -65,7 +65,7 @@ void PrintDialogue::tell(const PrintReport& report) {
   if (!changed) return;
   if (report.state == PrintState::kWaiting && !report.text.empty()) {
     if (asks_ && question_ != Question::kHowToGoOn && !report.choices.empty())
-      ask(Question::kOfPrinter, question_of(report) + "\nYour answer (Enter: the first): ");
+      ask_for_printer();
     else
       say(question_of(report));
   }
@@ -122,10 +122,22 @@ void PrintDialogue::take_line(const std::string& line) {
   if (question == Question::kOfPrinter) return control_.answer(std::atoi(line.c_str()));
   if (question == Question::kNone) return;
   const char choice = line.empty() ? '?' : line[0];
-  if (choice == 'g') return forget_interrupts(), heard_ = 0, control_.resume();
+  if (choice == 'g') return go_on();
   if (choice == 'c') return control_.cancel();
   if (choice == 's') return control_.stop_at_once();
   ask(Question::kHowToGoOn, "g: go on, c: cancel, s: stop at once? ");
+}
+
+void PrintDialogue::go_on() {
+  forget_interrupts();
+  heard_ = 0;
+  control_.resume();
+  // What the printer asked before, or meanwhile, it asks still.
+  if (report_.state == PrintState::kWaiting && !report_.choices.empty()) ask_for_printer();
+}
+
+void PrintDialogue::ask_for_printer() {
+  ask(Question::kOfPrinter, question_of(report_) + "\nYour answer (Enter: the first): ");
 }
 
 void PrintDialogue::ask(Question question, const std::string& text) {

@@ -32,6 +32,8 @@ class PrintDialogue {
 
   void hear_signals();
   void take_line(const std::string& line);
+  void go_on();
+  void ask_for_printer();
   void ask(Question question, const std::string& text);
   void show(const PrintReport& report);
   void say(const std::string& text);

@@ -70,13 +70,13 @@ class Sending(unittest.TestCase):
         os.close(slave)
         shown = bytearray()
 
-        def shows(text):
+        def shows(text, times=1):
             while select.select([master], [], [], 0)[0]:
                 try:
                     shown.extend(os.read(master, 4096))
                 except OSError:
                     break
-            return text in shown.decode(errors="replace")
+            return shown.decode(errors="replace").count(text) >= times
 
         return child, shows, lambda text: os.write(master, text.encode())
 
@@ -101,6 +101,22 @@ class Sending(unittest.TestCase):
         executed = record.read_text().splitlines()
         self.assertEqual(executed.count("M140 S0"), 1, "heaters off")
         self.assertLess(executed.count("G1 X60 F3600"), 250)
+
+    def test_a_question_of_the_printer_is_asked_again_behind_a_pause(self):
+        job = write_job(self.folder / "job", ["G28", "M600", *moves(3)])
+        port, record = self.simulated()
+        child, shows, write = self.at_terminal(job, port)
+        self.wait_for(lambda: shows("Your answer"), "the printer asks")
+        child.send_signal(signal.SIGINT)
+        self.wait_for(lambda: shows("s: stop at once?"), "the pause asks")
+        write("g\n")
+        self.wait_for(lambda: shows("Your answer", 2), "the printer's question stands again")
+        write("0\n")
+        self.wait_for(lambda: shows("1: Continue"), "its second question")
+        write("1\n")
+        self.wait_for(lambda: child.poll() is not None, "it ends")
+        self.assertEqual(child.returncode, 0)
+        self.assertEqual(record.read_text().count("G1"), 3)
 
     def test_stop_at_once(self):
         job = write_job(self.folder / "job", moves(500))
