@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 
 #include "firmware_io/heat_watch.h"
 #include "firmware_io/simulated/marlin.h"
@@ -140,6 +141,80 @@ std::size_t longest_lead(MarlinTraits traits, FaultRates rates) {
   EXPECT_FALSE(failure) << failure->what();
   EXPECT_EQ(only(port.executed(), program), program);
   return lead;
+}
+
+// Takes a fiftieth of a second for each line; behind two of them one more ok comes a moment later,
+// when the next line is on its way already and seems to be answered by it.
+class LateOks : public simulated::Firmware {
+ public:
+  std::vector<std::size_t> on_its_way;  // with each numbered line: how many are not answered
+
+  void receive(std::string_view bytes, double now_s) override {
+    for (const char c : bytes) {
+      if (c != '\n') {
+        line_ += c;
+        continue;
+      }
+      if (!line_.empty()) take(std::exchange(line_, {}), now_s);
+    }
+  }
+  void advance(double now_s) override {
+    while (!answers_.empty() && answers_.front().first <= now_s) {
+      output_ += answers_.front().second;
+      answers_.pop_front();
+    }
+  }
+  double next_event_s() const override {
+    return answers_.empty() ? simulated::kNever : answers_.front().first;
+  }
+
+ private:
+  static constexpr double kLine_s = 0.02;
+  static constexpr const char* kSurplus = "ok late\n";
+
+  void take(const std::string& line, double now_s) {
+    const double due_s = std::max(now_s, free_at_s_) + kLine_s;
+    free_at_s_ = due_s;
+    answers_.emplace_back(due_s, answer(line));
+    const auto unanswered = std::count_if(answers_.begin(), answers_.end(),
+                                          [](const auto& each) { return each.second != kSurplus; });
+    if (line.starts_with("N")) on_its_way.push_back(static_cast<std::size_t>(unanswered));
+    const bool surplus = line.starts_with("N120 ") || line.starts_with("N121 ");
+    if (surplus) answers_.emplace_back(due_s + kLine_s / 2, kSurplus);
+  }
+
+  std::string answer(const std::string& line) {
+    const bool numbered = line.starts_with("N");
+    const long number = numbered ? std::atol(line.c_str() + 1) : 0;
+    const bool garbled = number == 3 && !std::exchange(asked_, true);
+    if (garbled || number > last_ + 1) return "Resend: " + std::to_string(last_ + 1) + "\nok\n";
+    if (numbered) last_ = number;
+    if (line.find("M114") != std::string::npos) return "X:0 Y:0 Z:0 E:0\nok\n";
+    return line == "M105" ? "ok T:20 /0 B:20 /0\n" : polite(line);
+  }
+
+  std::string line_;
+  long last_ = 0;
+  bool asked_ = false;  // for a line, so that it is known to count them
+  double free_at_s_ = 0;
+  std::deque<std::pair<double, std::string>> answers_;
+};
+
+// Nothing tells them from the answers that they are taken for, but M105 behind every hundredth
+// line.
+TEST(SurplusOks, ThatCameLateAreMadeUpForByTheNextProof) {
+  LateOks firmware;
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(250)), control);
+  EXPECT_FALSE(failure) << failure->what();
+  const std::size_t most =
+      *std::max_element(firmware.on_its_way.begin(), firmware.on_its_way.end());
+  EXPECT_GE(most, 3u) << "two lines ahead of the answers";
+  ASSERT_GT(firmware.on_its_way.size(), 240u);
+  // index i: line i, but that line 3 comes twice
+  EXPECT_EQ(firmware.on_its_way[200], 3u) << "two lines ahead of the answers";
+  for (std::size_t i = 202; i < 240; ++i) EXPECT_EQ(firmware.on_its_way[i], 1u) << i;
 }
 
 TEST(SurplusOks, OpenNothing) {
