@@ -99,6 +99,7 @@ std::size_t GcodeStream::pause(std::size_t number) {
   pause_text_.clear();
   between_ = false;
   place_.forget();
+  trace_ = {};
   return number;
 }
 

@@ -148,6 +148,36 @@ TEST(Uncounted, OneLineAtATimeWhateverTheWindow) {
   EXPECT_EQ(seen.executed, program);
 }
 
+// And by whose command there is an ok more.
+TEST(Uncounted, SomebodyMayMoveTheHeadInAPause) {
+  std::vector<std::string> program = moves("M83", 60);
+  program.insert(program.begin() + 5, "G1 Z0.3");
+  Marlin firmware(Pace{1, false}, uncounted());
+  FaultyPort port(firmware);
+  PrintControl control;
+  int step = 0;
+  port.on_step = [&](std::size_t) {
+    const std::size_t executed = port.executed().size();
+    if (step == 0 && executed > 20) {
+      control.pause();
+      step = 1;
+    } else if (step == 1 && port.now_s() > 300) {
+      firmware.receive("G1 Z77 F600\n", port.now_s());
+      step = 2;
+    } else if (step == 2 && port.now_s() > 400) {
+      control.resume();
+      step = 3;
+    }
+  };
+  port.on_send = [&](std::string& bytes) {
+    port.lose_answers = bytes.find(program[40] + "*") != std::string::npos;
+  };
+  const auto failure = print(port, true, text(program), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(step, 3);
+  EXPECT_EQ(only(port.executed(), program), program);
+}
+
 // What does the same when it is executed twice in a row may be.
 std::vector<std::string> without_harmless_repeats(std::vector<std::string> executed) {
   const auto repeats = [](const std::string& a, const std::string& b) {
