@@ -18,7 +18,7 @@ install_packages() {
   [ -z "${missing// /}" ] && return 0
   if [ "$(id -u)" -ne 0 ]; then
     echo "Some packages are missing and only root can install them; run: sudo apt-get install -y --no-install-recommends $missing" >&2
-    exit 1
+    return 1  # whoever sourced this in a shell of his own keeps it
   fi
   echo "Installing: $missing"
   export DEBIAN_FRONTEND=noninteractive

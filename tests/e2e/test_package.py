@@ -197,10 +197,12 @@ class Package(unittest.TestCase):
                      self.deb)
         self.assertEqual((result.returncode, result.stdout.strip()), (0, ""))
 
-    def test_settings_are_kept_on_upgrade(self):
+    def test_no_upgrade_asks_about_the_settings(self):
+        """A file of the package in /etc that somebody changed stops an upgrade that nobody watches."""
         root = self.folder / "root"
-        names = [f"/{path.relative_to(root)}" for path in root.glob("etc/**/*") if path.is_file()]
-        self.assertEqual(run("dpkg-deb", "-I", self.deb, "conffiles").stdout.split(), names)
+        self.assertEqual([path for path in root.glob("etc/**/*") if path.is_file()], [])
+        self.assertNotEqual(run("dpkg-deb", "-I", self.deb, "conffiles").returncode, 0)
+        self.assertEqual((root / "usr/share/packmerger/packmergerd.toml").read_text(), (INSTALL / "packmergerd.toml").read_text())
 
     def test_the_installed_programs_find_each_other(self):
         """A model is filled with tetrahedra by the helper in /usr/lib/packmerger, with the package's profiles."""
