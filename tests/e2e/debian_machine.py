@@ -18,11 +18,16 @@ ENVIRONMENT = ["env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL=C.UTF-
 # systemd-nspawn of Debian 12 forbids Landlock's calls of its own, and the daemon would find a kernel without Landlock.
 LANDLOCK = "landlock_create_ruleset landlock_add_rule landlock_restrict_self"
 
-# Where no systemd runs outside, nobody registers the machine or makes its place among the control groups; its systemd
-# wants these as version 2.
-ALONE = """mount --make-rprivate /
+# Where no systemd runs outside, nobody registers the machine or makes its place among the control groups, which its systemd
+# wants as version 2. Two machines in one place would end each other's services: each has the one that $0 names.
+CONTROL_GROUPS = """mount --make-rprivate /
 if [ "$(stat -f -c %T /sys/fs/cgroup)" != cgroup2fs ]; then umount -l /sys/fs/cgroup && mount -t cgroup2 none /sys/fs/cgroup; fi
+"""
+ALONE = CONTROL_GROUPS + """mkdir "/sys/fs/cgroup/$0"
+echo $$ > "/sys/fs/cgroup/$0/cgroup.procs"
 exec "$@" --register=no --keep-unit"""
+LEAVE = CONTROL_GROUPS + 'find "/sys/fs/cgroup/$0" -depth -type d -exec rmdir {} +'
+WEB = {"http": 80, "https": 443}
 
 
 def missing():
@@ -34,8 +39,10 @@ def missing():
             return f"{tool} is not here: apt-get install {package}"
     sites = subprocess.run(["apt-get", "indextargets", "--format", "$(SITE)"], capture_output=True, text=True).stdout
     for site in map(urllib.parse.urlsplit, sorted(set(sites.split()))):
+        if not (port := site.port or WEB.get(site.scheme)):
+            continue
         try:
-            socket.create_connection((site.hostname, site.port or socket.getservbyname(site.scheme)), 10).close()
+            socket.create_connection((site.hostname, port), 10).close()
             return None
         except OSError:
             continue
@@ -74,10 +81,12 @@ class Machine:
         archives = BUILD / "debian-12-archives"  # so that a further run downloads nothing again
         (archives / "partial").mkdir(parents=True, exist_ok=True)
         (self.root / "etc/apt/apt.conf.d/90keep").write_text('Binary::apt::APT::Keep-Downloaded-Packages "1";\n')
-        boot = ["systemd-nspawn", "--quiet", "--boot", f"--directory={self.root}", "--machine=packmerger-test", "--console=pipe",
+        self.name = f"packmerger-test-{os.getpid()}"
+        self.alone = not pathlib.Path("/run/systemd/system").is_dir()
+        boot = ["systemd-nspawn", "--quiet", "--boot", f"--directory={self.root}", f"--machine={self.name}", "--console=pipe",
                 f"--system-call-filter={LANDLOCK}", "--resolv-conf=copy-host", f"--bind={archives}:/var/cache/apt/archives"]
-        if not pathlib.Path("/run/systemd/system").is_dir():
-            boot = ["unshare", "--mount", "sh", "-ec", ALONE, "sh", *boot]
+        if self.alone:
+            boot = ["unshare", "--mount", "sh", "-ec", ALONE, self.name, *boot]
         self.log = open(log, "wb")
         self.nspawn = subprocess.Popen(boot, stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log,
                                        env=dict(os.environ, SYSTEMD_NSPAWN_UNIFIED_HIERARCHY="1"))
@@ -125,4 +134,6 @@ class Machine:
         except subprocess.TimeoutExpired:
             self.nspawn.kill()
             self.nspawn.wait()
+        if self.alone:
+            subprocess.run(["unshare", "--mount", "sh", "-ec", LEAVE, self.name], check=True)
         self.log.close()
