@@ -89,6 +89,8 @@ void FrontDesk::open(double now_s) {
   if (now_s < retry_s_ || (web_ && !is_elsewhere)) return;
   try {
     fs::create_directories(uploads_folder(config_));
+    // others may enter a state folder of before
+    fs::permissions(uploads_folder(config_), fs::perms::owner_all);
     close();
     web_ = std::make_unique<Web>(config_, keys_, questions_, events_);
     log_("web server at http://" + web_->address() + ":" + std::to_string(web_->port()) +

@@ -52,8 +52,12 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
     return run(options);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return program.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : static_cast<int>(Fault::kUsage);
+    log(std::string("error: ") + error.what());
+    log("hint: packmergerd --help tells how it is used");
+    return static_cast<int>(Fault::kUsage);
   } catch (const Error& error) {
     log(std::string("error: ") + error.what());
     if (!error.hint().empty()) log("hint: " + error.hint());

@@ -77,6 +77,10 @@ class Usage(CommandLine):
         self.assertEqual(self.expect(2, "compare").err,
                          "error: MODEL is required.\nhint: `packmerger compare --help` tells how it is used.\n")
 
+        daemon = subprocess.run([program.binary("packmergerd")], capture_output=True, text=True)
+        self.assertEqual((daemon.returncode, daemon.stderr),
+                         (2, "error: --config is required\nhint: packmergerd --help tells how it is used\n"))
+
     def test_values_that_are_wrong_are_told_in_words(self):
         for wrong, told in ((("jobs", "approve", "bunny"), 'ID: "bunny" is not a whole number above 0'),
                             (("compare", self.sphere, "--size", "3cm"), '--size: "3cm" is not a number above 0'),

@@ -311,6 +311,14 @@ class Trust(unittest.TestCase):
         finally:
             daemon.close()
 
+    def test_nobody_else_sees_what_arrives_in_a_state_folder_from_before(self):
+        def open_to_others(folder):
+            (folder / "state").mkdir()
+            (folder / "state").chmod(0o755)
+        daemon = Daemon(furnish=open_to_others)
+        self.addCleanup(daemon.close)
+        self.assertEqual((daemon.folder / "state" / "uploads").stat().st_mode & 0o777, 0o700)
+
     def test_settings_from_before_are_as_they_were_and_told_once(self):
         daemon = Daemon()
         try:
