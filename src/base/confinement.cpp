@@ -8,13 +8,16 @@
 #include <linux/seccomp.h>
 #include <sched.h>
 #include <seccomp.h>
+#include <signal.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -87,7 +90,7 @@ constexpr int kForbidden[] = {
     SCMP_SYS(futimesat), SCMP_SYS(utimensat), SCMP_SYS(setxattr), SCMP_SYS(lsetxattr),
     SCMP_SYS(fsetxattr), SCMP_SYS(removexattr), SCMP_SYS(lremovexattr), SCMP_SYS(fremovexattr),
     SCMP_SYS(socket), SCMP_SYS(io_uring_setup), SCMP_SYS(io_uring_enter),
-    SCMP_SYS(io_uring_register), SCMP_SYS(tkill), SCMP_SYS(tgkill), SCMP_SYS(rt_sigqueueinfo),
+    SCMP_SYS(io_uring_register), SCMP_SYS(tkill), SCMP_SYS(rt_sigqueueinfo),
     SCMP_SYS(rt_tgsigqueueinfo),
     // /proc/PID opened as a folder is one that pidfd_send_signal takes
     SCMP_SYS(pidfd_open), SCMP_SYS(pidfd_send_signal), SCMP_SYS(pidfd_getfd), SCMP_SYS(ptrace),
@@ -170,6 +173,33 @@ std::vector<char> filter_program() {
   return program;
 }
 
+bool install(sock_filter* first, std::size_t count) {
+  sock_fprog program{};
+  program.len = static_cast<unsigned short>(count);
+  program.filter = first;
+  return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
+}
+
+// Of tgkill, abort() of the caller itself alone, so that a program that gives up is told as one.
+// Which process that is, is known only after the fork, so this is no rule of the filter above.
+bool forbid_other_signals() {
+  static_assert(std::endian::native == std::endian::little, "the low half of an argument is first");
+  const auto argument = [](unsigned index) {
+    return static_cast<unsigned>(offsetof(seccomp_data, args) + 8 * index);
+  };
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_tgkill, 0, 4),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, argument(0)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<unsigned>(::getpid()), 0, 3),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, argument(2)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SIGABRT, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EACCES),
+  };
+  return install(filter, sizeof filter / sizeof *filter);
+}
+
 }  // namespace
 
 bool can_confine_files() { return landlock_abi() > 0; }
@@ -182,10 +212,8 @@ bool Confinement::apply() const {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
   if (files_.get() >= 0 && ::syscall(SYS_landlock_restrict_self, files_.get(), 0) != 0)
     return false;
-  sock_fprog program{};
-  program.len = static_cast<unsigned short>(calls_.size() / sizeof(sock_filter));
-  program.filter = reinterpret_cast<sock_filter*>(const_cast<char*>(calls_.data()));
-  return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
+  auto* first = reinterpret_cast<sock_filter*>(const_cast<char*>(calls_.data()));
+  return forbid_other_signals() && install(first, calls_.size() / sizeof(sock_filter));
 }
 
 }  // namespace packmerger

@@ -3,7 +3,8 @@
 // look into or change processes that are not below it. Linux: a seccomp filter made by libseccomp,
 // and Landlock for the files. Both hold for everything the child starts, and cannot be taken back.
 // It may send signals to its own process group alone, as kill(0, …): whoever wants to end another
-// group of its session joins it first (signal_group of base/process.h does).
+// group of its session joins it first (signal_group of base/process.h does). It may abort(); what
+// it starts dies of that in another way, by a segmentation fault.
 #pragma once
 
 #include <filesystem>

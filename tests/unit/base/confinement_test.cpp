@@ -136,6 +136,16 @@ TEST_F(ConfinementTest, NobodyOutsideIsSignalled) {
   ::waitpid(victim, nullptr, 0);
 }
 
+TEST_F(ConfinementTest, WhoGivesUpIsToldAsSuch) {
+  ProcessSpec spec;
+  spec.argv = {"/usr/bin/python3", "-c", "import os; os.abort()"};
+  spec.folder = own_;
+  spec.only_writable = {own_};
+  EXPECT_EQ(run_process(spec, 60, Progress()).status.signal, SIGABRT);
+  EXPECT_TRUE(refused("libc.gsignal(15)")) << "no other signal";
+  EXPECT_TRUE(refused("libc.syscall(234, os.getppid(), os.getppid(), 6)")) << "nor another process";
+}
+
 TEST_F(ConfinementTest, NoDeviceIsOpened) {
   if (!can_confine_files()) GTEST_SKIP() << "this kernel has no Landlock";
   EXPECT_TRUE(shell("head -c 1 /dev/urandom > own"));
