@@ -6,6 +6,7 @@
 #include "cli/checks.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
+#include "job/advice.h"
 #include "job/comparison_table.h"
 #include "tray/job_json.h"
 
@@ -149,8 +150,13 @@ void print_choice(const json& job) {
 
 void print_comparison(const json& job) {
   const json estimates = job.value("estimates", json());
-  if (estimates.is_object())
-    fmt::print("\n{}", comparison_table(comparison_of(estimates), text_of(job, "printer")));
+  if (!estimates.is_object()) return;
+  const Comparison ways = comparison_of(estimates);
+  std::string prepared = text_of(job, "variant");
+  if (prepared.empty()) prepared = variant_name(cheapest(ways).value_or(Variant::kPacked));
+  const std::string taking =
+      fmt::format("packmerger jobs prepare {} --variant", job.value("id", 0));
+  fmt::print("\n{}", comparison_table(ways, text_of(job, "printer"), prepared, taking));
 }
 
 void print_history(const json& job) {
@@ -177,6 +183,7 @@ void show(const Arguments& arguments) {
   if (const json deleted = job.value("deleted_s", json()); deleted.is_number())
     print_line("deleted", time_text(deleted));
   print_tray_files(job);
+  if (text_of(job, "kind") != "program") print_line("prepared", text_of(job, "variant"));
   print_line("profile", text_of(job, "profile"));
   if (const json seed = job.value("seed", json()); seed.is_number())
     print_line("seed", std::to_string(seed.get<std::int64_t>()));
@@ -196,7 +203,8 @@ void change(const Arguments& arguments, const std::string& verb) {
   const json job = ask(arguments.daemon, request);
   if (arguments.daemon.json) return print_json(job);
   fmt::print("Job {} ({}): {}\n", job.at("id").get<std::int64_t>(), text_of(job, "name"),
-             text_of(job, "status"));
+             verb == "delete" ? "its folder is deleted, what is known of it stays"
+                              : text_of(job, "status"));
   tell_start(job);
 }
 
@@ -227,9 +235,10 @@ void add_jobs(CLI::App& program) {
   };
   with_id(action("show", "Everything about one job"))->callback([arguments] { show(*arguments); });
   CLI::App* prepare = with_id(action("prepare", "Has a job's model prepared in another way"));
-  prepare->add_option("--variant", arguments->variant, "how: packed, hollow, solid or cheapest")
+  prepare->add_option("--variant", arguments->variant, "how: the parts packed, or the whole model")
       ->required()
-      ->check(CLI::IsMember({"packed", "hollow", "solid", "cheapest"}));
+      ->type_name(fmt::format("{}", fmt::join(variant_names(), "|")))
+      ->check(CLI::IsMember(variant_names()).description(""));
   prepare->callback([arguments] { change(*arguments, "prepare"); });
   for (const auto& [name, help] :
        {std::pair{"approve", "Lets a job be printed; also ends a hold"},

@@ -29,13 +29,15 @@ struct Arguments {
   bool json = false;
 };
 
-const std::map<std::string, Variant> kVariants{{"packed", Variant::kPacked},
-                                               {"hollow", Variant::kHollow},
-                                               {"solid", Variant::kSolid},
-                                               {"cheapest", Variant::kCheapest}};
+std::map<std::string, Variant> variants() {
+  std::map<std::string, Variant> all;
+  for (const std::string& name : variant_names()) all.emplace(name, *variant_named(name));
+  return all;
+}
 
 void tell(const Job& job, const std::string& out) {
-  fmt::print("{}\n{}\n", sizes_of(job), comparison_table(job.estimates, title_of(job.profile)));
+  fmt::print("{}\n{}\n", sizes_of(job),
+             comparison_table(job.estimates, title_of(job.profile), job.variant));
   fmt::print("Prepared: {}, {} part{}, {:.1f} mm high, in {}\n", job.variant, job.parts.size(),
              job.parts.size() == 1 ? "" : "s", job.height_mm, out);
   for (const Warning& warning : job.warnings)
@@ -115,8 +117,8 @@ void add_prepare(CLI::App& program) {
   verb->add_option("--variant", arguments->variant,
                    "what is prepared to be printed: the parts packed, the whole model hollow or "
                    "solid, or the cheapest of these")
-      ->transform(CLI::CheckedTransformer(kVariants).description(""))
-      ->type_name("packed|hollow|solid|cheapest")
+      ->transform(CLI::CheckedTransformer(variants()).description(""))
+      ->type_name(fmt::format("{}", fmt::join(variant_names(), "|")))
       ->default_str("packed");
   verb->add_flag("--json", arguments->json, "prints job.json instead of the table");
   verb->callback([arguments, verb] { run(*arguments, *verb); });

@@ -1,4 +1,6 @@
 // What people ask the foreman for.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/names.h"
@@ -36,7 +38,7 @@ JobRecord like(const JobRecord& old) {
 void check_variant(const JobRecord& job, const std::string& variant) {
   if (!variant_named(variant))
     throw Error(Fault::kUsage, "There is no variant " + printable(variant),
-                "It is one of packed, hollow, solid, cheapest.");
+                fmt::format("It is one of {}.", fmt::join(variant_names(), ", ")));
   if (is_program(job.name))
     throw Error(Fault::kUsage, title(job) + " is a program, printed as it is",
                 "Only models are prepared in another way.");

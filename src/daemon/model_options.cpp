@@ -32,10 +32,11 @@ void read_size(TableReader& reader, const std::string& size, ModelOptions& optio
 }
 
 void read_variant(TableReader& reader, ModelOptions& options) {
-  reader.text("variant", "one of packed, hollow, solid, cheapest", [&](const std::string& text) {
-    options.variant = text;
-    return variant_named(text).has_value();
-  });
+  reader.text("variant", fmt::format("one of {}", fmt::join(variant_names(), ", ")),
+              [&](const std::string& text) {
+                options.variant = text;
+                return variant_named(text).has_value();
+              });
 }
 
 // As --set takes a value; nothing for what it cannot take.

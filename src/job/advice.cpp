@@ -80,6 +80,12 @@ std::string against_packing(const Estimate& packed, const Estimate& other,
 
 }  // namespace
 
+std::vector<std::string> variant_names() {
+  std::vector<std::string> names;
+  for (const auto& known : kNames) names.emplace_back(known.second);
+  return names;
+}
+
 std::string_view variant_name(Variant variant) {
   for (const auto& [value, name] : kNames)
     if (value == variant) return name;

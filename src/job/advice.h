@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/estimate.h"
 
@@ -13,7 +14,9 @@ namespace packmerger {
 // What prepare --variant takes.
 enum class Variant { kPacked, kHollow, kSolid, kCheapest };
 
-// "packed", "hollow", "solid", "cheapest", and the inverse; empty where it is none of these.
+// Their names in that order, "packed", "hollow", "solid", "cheapest": the one list of them.
+std::vector<std::string> variant_names();
+// The name of one, and the inverse; empty where it is none of these.
 std::string_view variant_name(Variant variant);
 std::optional<Variant> variant_named(std::string_view name);
 

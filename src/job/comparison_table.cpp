@@ -122,9 +122,11 @@ std::string source_of(const Comparison& comparison) {
              : "Figures come from the profile's model of the machine (docs/ESTIMATES.md).\n";
 }
 
-std::string option_for(const Advice& advice) {
-  if (!advice.variant || *advice.variant == Variant::kPacked) return "";
-  return " Use --variant " + std::string(variant_name(*advice.variant)) + ".";
+// Where nothing is prepared yet, packed is what would be.
+std::string what_to_do(const Advice& advice, std::string_view prepared, const std::string& taking) {
+  const std::string_view now = prepared.empty() ? variant_name(Variant::kPacked) : prepared;
+  if (!advice.variant || variant_name(*advice.variant) == now) return "";
+  return fmt::format(" Use {} {}.", taking, variant_name(*advice.variant));
 }
 
 }  // namespace
@@ -137,7 +139,8 @@ std::string spoken_time(double seconds) {
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
-std::string comparison_table(const Comparison& comparison, const std::string& title) {
+std::string comparison_table(const Comparison& comparison, const std::string& title,
+                             std::string_view prepared, const std::string& taking) {
   const Estimate* yardstick = cheapest_unpacked(comparison);
   Cells names = {""};
   std::vector<Cells> figures = {kFigureTitles};
@@ -153,7 +156,7 @@ std::string comparison_table(const Comparison& comparison, const std::string& ti
   std::string text = title + "\n" + aligned(names, figures);
   if (paid.size() > 1) text += "\n" + aligned(paid_names, paid);
   const Advice told = advice(comparison);
-  return text + source_of(comparison) + told.text + option_for(told) + "\n";
+  return text + source_of(comparison) + told.text + what_to_do(told, prepared, taking) + "\n";
 }
 
 }  // namespace packmerger

@@ -44,6 +44,10 @@ TEST(Advice, TellsTheTruthWhenPackingDoesNotPay) {
   EXPECT_NE(advice(ways).text.find("does not pay"), std::string::npos);
   EXPECT_NE(advice(ways).text.find("printing it hollow"), std::string::npos);
   EXPECT_NE(comparison_table(ways, "x").find("Use --variant hollow."), std::string::npos);
+  EXPECT_NE(comparison_table(ways, "x", "solid", "this").find("Use this hollow."),
+            std::string::npos);
+  EXPECT_EQ(comparison_table(ways, "x", "hollow").find("Use "), std::string::npos)
+      << "it is prepared so";
 }
 
 TEST(Advice, PacksWhatFitsNoOtherWay) {
