@@ -62,9 +62,10 @@ PlanOptions plan_options(const PlanArguments& arguments) {
 
 void check_profile_given(bool given) {
   if (given) return;
+  const std::vector<std::string> ids = profile_ids();
   throw Error(Fault::kUsage, "No printer was named",
-              fmt::format("Name one with --profile: {}, or the path of a TOML file.",
-                          fmt::join(profile_ids(), ", ")));
+              fmt::format("Name one with --profile: {}{}the path of a TOML file.",
+                          fmt::join(ids, ", "), ids.empty() ? "" : ", or "));
 }
 
 Profile chosen_profile(const std::string& id_or_path, const PlanArguments& arguments) {

@@ -62,6 +62,18 @@ void check_complete(const Profile& profile, const ProfileFile& file,
     file.refuse(1, missing);
 }
 
+std::string what_there_is(const std::string& id) {
+  const std::vector<std::string> ids = profile_ids();
+  if (ids.empty())
+    return "No profiles are installed. Install PackMerger again, or name the folder that holds "
+           "them "
+           "in PACKMERGER_PROFILES.";
+  return fmt::format(
+      "{}There are {}. For another printer write a profile of your own on the base of "
+      "the nearest (docs/PROFILES.md); its path must contain a slash or end in .toml.",
+      did_you_mean(id, ids), fmt::join(ids, ", "));
+}
+
 // Where an id or a path, as read_profile() takes it, is read from.
 fs::path profile_path(std::string_view id_or_path) {
   if (id_or_path.find('/') != std::string_view::npos || id_or_path.ends_with(".toml"))
@@ -69,11 +81,7 @@ fs::path profile_path(std::string_view id_or_path) {
   const std::string id(id_or_path);
   fs::path path = is_profile_id(id) ? find_profile(id, profile_folders()) : fs::path();
   if (path.empty())
-    throw Error(Fault::kNoInput, fmt::format("There is no profile \"{}\"", id),
-                fmt::format("{}There are {}. For another printer write a profile of your own on "
-                            "the base of the nearest (docs/PROFILES.md); its path must contain a "
-                            "slash or end in .toml.",
-                            did_you_mean(id, profile_ids()), fmt::join(profile_ids(), ", ")));
+    throw Error(Fault::kNoInput, fmt::format("There is no profile \"{}\"", id), what_there_is(id));
   return path;
 }
 

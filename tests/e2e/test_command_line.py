@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -86,6 +87,15 @@ class Usage(CommandLine):
                             (("compare", self.sphere, "--size", "3cm"), '--size: "3cm" is not a number above 0'),
                             (("compare", self.sphere, "--copies", "0"), '--copies: "0" is not a whole number from 1 to 1000')):
             self.assertIn(f"error: {told}.\n", self.expect(2, *wrong).err)
+
+    def test_a_program_without_its_profiles_says_so(self):
+        if any(pathlib.Path(folder, "packmerger/profiles").exists() for folder in ("/etc", "/usr/share")):
+            self.skipTest("PackMerger is installed here")
+        moved = shutil.copy(program.binary(), self.folder)
+        done = subprocess.run([moved, "profiles", "show", "marlin"], capture_output=True, text=True,
+                              env={"PATH": "/usr/bin:/bin", "XDG_CONFIG_HOME": str(self.folder)})
+        self.assertEqual(done.returncode, 66, done.stderr)
+        self.assertIn("hint: No profiles are installed.", done.stderr)
 
     def test_a_daemon_that_is_not_there_may_be_the_package_s(self):
         err = self.expect(69, "jobs", "list", "--socket", self.folder / "none.sock").err
