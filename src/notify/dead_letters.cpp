@@ -3,25 +3,21 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "base/descriptor.h"
+#include "base/wall_clock.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 
-double unix_time_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
 bool DeadLetters::keep(const std::string& to, const std::string& why, const std::string& body) {
   using nlohmann::json;
-  const json line = {{"at_s", unix_time_s()},
+  const json line = {{"at_s", unix_now_s()},
                      {"to", to},
                      {"why", why},
                      {"message", json::parse(body, nullptr, false)}};

@@ -14,6 +14,8 @@
 #include <memory>
 #include <utility>
 
+#include "base/backoff.h"
+
 namespace packmerger {
 namespace {
 
@@ -23,15 +25,16 @@ constexpr int kMostNames = 20;  // tried for a service
 // The conversation with avahi-daemon. Every callback runs on the thread of run().
 class Announcement {
  public:
-  Announcement(std::vector<MdnsService> services, const TellLine& tell)
-      : services_(std::move(services)), tell_(tell) {
+  Announcement(std::vector<MdnsService> services, const TellLine& tell, Standing& standing,
+               double retry_s)
+      : services_(std::move(services)), tell_(tell), standing_(standing), retry_s_(retry_s) {
     for (MdnsService& service : services_) service.name = fitting(service.name);
   }
   Announcement(const Announcement&) = delete;
   Announcement& operator=(const Announcement&) = delete;
   ~Announcement() { disconnect(); }
 
-  void run(int ending, double retry_s) {
+  void run(int ending) {
     if (poll_ == nullptr) return;
     const AvahiPoll* api = avahi_simple_poll_get(poll_.get());
     AvahiWatch* watch = api->watch_new(
@@ -43,13 +46,15 @@ class Announcement {
     while (!ends_) {
       if (is_lost_) disconnect();
       if (client_ == nullptr) connect();
-      avahi_simple_poll_iterate(poll_.get(), static_cast<int>(1000 * retry_s));
+      avahi_simple_poll_iterate(poll_.get(), static_cast<int>(1000 * pause_s()));
     }
     disconnect();
     api->watch_free(watch);
   }
 
  private:
+  double pause_s() const { return backoff_s(retry_s_, failures_ - 1); }
+
   static std::string fitting(std::string name) {
     name.resize(std::min<std::size_t>(name.size(), AVAHI_LABEL_MAX - 1));
     return name;
@@ -62,7 +67,8 @@ class Announcement {
                                this, &error);
     if (client_ != nullptr) return;
     group_ = nullptr;
-    tell_absent(avahi_strerror(error));
+    ++failures_;
+    tell_absent(avahi_strerror(error), pause_s());
   }
 
   void disconnect() {
@@ -70,7 +76,9 @@ class Announcement {
     if (client_ != nullptr) avahi_client_free(std::exchange(client_, nullptr));
   }
 
-  void tell_absent(const std::string& why) {
+  // pause_s: until the next try; 0: avahi-daemon tells when it is there again.
+  void tell_absent(const std::string& why, double pause_s = 0) {
+    standing_.failed(why, pause_s);
     if (!std::exchange(is_told_, true))
       tell_("printers are not announced on the network (mDNS): " + why);
   }
@@ -101,6 +109,8 @@ class Announcement {
     if (state == AVAHI_ENTRY_GROUP_ESTABLISHED) {
       self->tell_("printers are announced on the network (mDNS)");
       self->is_told_ = false;
+      self->failures_ = 0;
+      self->standing_.works();
     } else if (state == AVAHI_ENTRY_GROUP_COLLISION) {
       for (MdnsService& service : self->services_) rename(service);
       self->announce();
@@ -142,10 +152,13 @@ class Announcement {
 
   std::vector<MdnsService> services_;
   const TellLine& tell_;
+  Standing& standing_;
+  const double retry_s_;
   std::unique_ptr<AvahiSimplePoll, void (*)(AvahiSimplePoll*)> poll_{avahi_simple_poll_new(),
                                                                      avahi_simple_poll_free};
   AvahiClient* client_ = nullptr;
   AvahiEntryGroup* group_ = nullptr;
+  int failures_ = 0;  // to reach D-Bus, one after the other
   bool ends_ = false;
   bool is_lost_ = false;
   bool is_told_ = false;  // that nothing is announced
@@ -158,7 +171,8 @@ Mdns::Mdns(std::vector<MdnsService> services, TellLine tell, double retry_s)
       tell_(std::move(tell)),
       retry_s_(retry_s),
       ending_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  thread_ = std::thread([this] { Announcement(services_, tell_).run(ending_.get(), retry_s_); });
+  thread_ = std::thread(
+      [this] { Announcement(services_, tell_, standing_, retry_s_).run(ending_.get()); });
 }
 
 Mdns::~Mdns() {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "base/descriptor.h"
 #include "notify/notice.h"
+#include "notify/standing.h"
 
 namespace packmerger {
 
@@ -24,18 +26,20 @@ struct MdnsService {
 // run that is told once; it is announced again when it is back.
 class Mdns {
  public:
-  // retry_s: how often D-Bus is tried again where there is none.
+  // retry_s: before D-Bus is tried again where there is none; doubled up to sixteen times.
   Mdns(std::vector<MdnsService> services, TellLine tell, double retry_s = 30);
   Mdns(const Mdns&) = delete;
   Mdns& operator=(const Mdns&) = delete;
   ~Mdns();
 
   const std::vector<MdnsService>& services() const { return services_; }
+  std::optional<Trouble> trouble() const { return standing_.trouble(); }  // from any thread
 
  private:
   const std::vector<MdnsService> services_;
   const TellLine tell_;
   const double retry_s_;
+  Standing standing_;
   Descriptor ending_;  // readable once this is to end
   std::thread thread_;
 };

@@ -11,6 +11,9 @@
 #include <random>
 #include <utility>
 
+#include "base/backoff.h"
+#include "notify/retained_topics.h"
+
 namespace packmerger {
 namespace {
 
@@ -121,55 +124,86 @@ Mqtt::~Mqtt() {
   thread_.join();
 }
 
-void Mqtt::run() {
-  struct Newest {
-    std::string body;
-    bool is_told = false;
-  };
-  std::map<std::string, Newest> topics;
-  std::optional<Session> session;
-  double next_s = 0;
-  double retry_s = limits_.retry_s;
-  std::string told;
-  const auto tell = [&](const std::string& text) {
-    if (std::exchange(told, text) != text) tell_("MQTT broker " + settings_.broker + ": " + text);
-  };
-  const auto take = [&] {
-    while (std::optional<Notice> notice = queue_.try_pop())
-      topics[settings_.topic + "/" + notice->topic] = {std::move(notice->body), false};
-  };
-  const auto connect = [&] {
-    session.emplace(*this);
-    if (const std::string why = session->connect(); !why.empty()) {
-      tell(why);
-      session.reset();
-      next_s = now_s() + std::exchange(retry_s, std::min(2 * retry_s, kLongestRetry_s));
-      return;
-    }
-    tell("connected");
-    retry_s = limits_.retry_s;
-    for (auto& [topic, newest] : topics) newest.is_told = false;
-  };
-  const auto publish = [&] {
-    for (auto& [topic, newest] : topics) {
-      if (!session || newest.is_told) continue;
-      newest.is_told = session->publish(topic, newest.body);
-      if (newest.is_told) continue;
-      session.reset();
-      next_s = now_s() + limits_.retry_s;
-    }
-  };
-  while (!queue_.closed()) {
-    take();
-    if (session && !session->is_connected()) session.reset();
-    if (!session && now_s() >= next_s) connect();
-    publish();
-    const double wait_s = session ? kLookEvery_s : std::max(0.0, next_s - now_s());
-    pollfd news{queue_.fd(), POLLIN, 0};
-    ::poll(&news, 1, static_cast<int>(1000 * wait_s) + 1);
+// The thread's own: the connection, and what the broker has of it.
+class Mqtt::Keeper {
+ public:
+  explicit Keeper(Mqtt& owner) : owner_(owner) {}
+
+  void take() {
+    while (std::optional<Notice> notice = owner_.queue_.try_pop())
+      topics_.take(owner_.settings_.topic + "/" + notice->topic, std::move(notice->body));
   }
-  take();
-  publish();
+
+  void keep_connected() {
+    if (session_ && !session_->is_connected()) lose("the connection was lost");
+    if (session_ || now_s() < next_s_) return;
+    session_.emplace(owner_);
+    if (const std::string why = session_->connect(); !why.empty()) return lose(why);
+    connected_s_ = now_s();
+    topics_.begin();
+  }
+
+  void publish() {
+    while (session_) {
+      const auto* message = topics_.next();
+      if (message == nullptr) return has_all();
+      const std::string topic = message->first;
+      if (session_->publish(topic, message->second.body)) {
+        topics_.told(topic);
+        continue;
+      }
+      lose(topics_.refused(topic)
+               ? "it does not take the messages of " + topic + ", which are left out"
+               : "it does not take its messages");
+    }
+  }
+
+  double wait_s() const { return session_ ? kLookEvery_s : std::max(0.0, next_s_ - now_s()); }
+
+ private:
+  void tell(const std::string& text) {
+    if (std::exchange(told_, text) != text)
+      owner_.tell_("MQTT broker " + owner_.settings_.broker + ": " + text);
+  }
+
+  // A connection that lasted was none of those that fail again and again.
+  void lose(const std::string& why) {
+    if (connected_s_ > 0 && now_s() - connected_s_ > kLongestRetry_s) failures_ = 0;
+    connected_s_ = 0;
+    session_.reset();
+    const double pause_s =
+        std::min(backoff_s(owner_.limits_.retry_s, failures_++), kLongestRetry_s);
+    next_s_ = now_s() + pause_s;
+    owner_.standing_.failed(why, pause_s);
+    tell(why);
+  }
+
+  void has_all() {
+    if (topics_.leaves_out()) return owner_.standing_.lasts();
+    owner_.standing_.works();
+    tell("connected");
+  }
+
+  Mqtt& owner_;
+  RetainedTopics topics_;
+  std::optional<Session> session_;
+  double connected_s_ = 0;  // 0: it is not
+  double next_s_ = 0;
+  int failures_ = 0;
+  std::string told_;
+};
+
+void Mqtt::run() {
+  Keeper keeper(*this);
+  while (!queue_.closed()) {
+    keeper.take();
+    keeper.keep_connected();
+    keeper.publish();
+    pollfd news{queue_.fd(), POLLIN, 0};
+    ::poll(&news, 1, static_cast<int>(1000 * keeper.wait_s()) + 1);
+  }
+  keeper.take();
+  keeper.publish();
 }
 
 }  // namespace packmerger

@@ -13,10 +13,14 @@
 #include <random>
 #include <utility>
 
+#include "base/backoff.h"
+
 namespace packmerger {
 namespace {
 
 constexpr double kFarewell_s = 2;
+constexpr int kDoublings = 6;
+constexpr double kLongestWish_s = 3600;     // of a receiver, by Retry-After
 constexpr std::size_t kMostAnswer = 65536;  // bytes, of which nothing is kept
 
 double now_s() {
@@ -75,10 +79,12 @@ struct Webhook::Courier {
     std::string why;
     std::string kind;  // without what differs from one attempt to the next
     bool again = false;
+    bool is_got = false;  // the receiver had the message, or part of it
+    double wish_s = 0;    // no earlier, it said
   };
 
   Outcome bring(const Letter& letter, const Webhook& hook) {
-    if (curl == nullptr) return {"out of memory", "out of memory", true};
+    if (curl == nullptr) return {"out of memory", "out of memory", true, false, 0};
     curl_slist* list = nullptr;
     const auto add = [&](const std::string& line) { list = curl_slist_append(list, line.c_str()); };
     add("Content-Type: application/json");
@@ -113,9 +119,15 @@ struct Webhook::Courier {
     const bool is_whole = code == CURLE_OK || code == CURLE_WRITE_ERROR;  // a long answer is one
     if (is_whole && status >= 200 && status < 300) return {};
     const std::string refused = "HTTP " + std::to_string(status);
-    if (is_whole) return {refused, refused, may_pass(status)};
+    curl_off_t wish_s = 0;
+    curl_easy_getinfo(handle, CURLINFO_RETRY_AFTER, &wish_s);
+    if (is_whole)
+      return {refused, refused, may_pass(status), true,
+              std::min(static_cast<double>(wish_s), kLongestWish_s)};
+    curl_off_t sent = 0;
+    curl_easy_getinfo(handle, CURLINFO_SIZE_UPLOAD_T, &sent);
     const std::string kind = curl_easy_strerror(code);
-    return {trouble[0] != 0 ? trouble.data() : kind, kind, true};
+    return {trouble[0] != 0 ? trouble.data() : kind, kind, true, sent > 0, 0};
   }
 };
 
@@ -136,9 +148,12 @@ void Webhook::run() {
   Courier courier;
   std::deque<Letter> waiting;
   double next_s = 0;
+  int failures = 0;  // of the receiver, one after the other, whichever message it was
   std::string told;  // the kind of what was told last; empty: it takes messages
+  bool told_lost = false;
   const auto give_up = [&](const std::string& why) {
-    dead_.keep(settings_.url, why, waiting.front().body);
+    if (!dead_.keep(settings_.url, why, waiting.front().body) && !std::exchange(told_lost, true))
+      tell_("webhook " + settings_.url + ": what cannot be delivered cannot be kept either");
     waiting.pop_front();
   };
   for (;;) {
@@ -157,15 +172,21 @@ void Webhook::run() {
     const Courier::Outcome outcome = courier.bring(letter, *this);
     if (outcome.why.empty()) {
       if (!std::exchange(told, {}).empty()) tell_("webhook " + settings_.url + ": answers again");
+      failures = 0;
+      standing_.works();
       waiting.pop_front();
       continue;
     }
     if (std::exchange(told, outcome.kind) != outcome.kind)
       tell_("webhook " + settings_.url + ": " + outcome.why);
-    next_s = now_s() + limits_.first_retry_s * (1 << letter.tries);
-    if (++letter.tries < limits_.tries && outcome.again) continue;
-    next_s = 0;
-    give_up(outcome.why);
+    if (!outcome.again) failures = 0;  // it is there, and wants others
+    const double pause_s =
+        outcome.again
+            ? std::max(backoff_s(limits_.first_retry_s, failures++, kDoublings), outcome.wish_s)
+            : 0;
+    next_s = now_s() + pause_s;
+    standing_.failed(outcome.why, pause_s);
+    if (outcome.is_got && (++letter.tries >= limits_.tries || !outcome.again)) give_up(outcome.why);
   }
   while (!waiting.empty()) give_up("the daemon ended");
 }

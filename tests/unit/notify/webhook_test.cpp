@@ -105,6 +105,61 @@ TEST(Webhook, ATroubleIsToldOnceAndAgainWhenItChangesOrEnds) {
       told, ElementsAre(HasSubstr("HTTP 500"), HasSubstr("HTTP 503"), HasSubstr("answers again")));
 }
 
+// Pauses of 20, 40, 80, 160 and 320 ms: were they each message's own, three tries of five messages
+// would take 5 · 60 ms.
+TEST(Webhook, ThePausesAreTheReceiversAndNotEachMessages) {
+  const TemporaryFolder folder;
+  DeadLetters dead(folder.path() / "dead");
+  Receiver receiver;
+  receiver.statuses = std::vector<int>(15, 500);
+  const auto begun = std::chrono::steady_clock::now();
+  Webhook webhook({receiver.url(), ""}, dead, [](const std::string&) {},
+                  {.answer_s = 5, .first_retry_s = 0.02, .tries = 3, .most_waiting = 10});
+  for (int i = 0; i < 5; ++i) webhook.push({"t", std::to_string(i)});
+  EXPECT_TRUE(wait_for_bodies(receiver, 6));
+  EXPECT_GE(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(600));
+  EXPECT_EQ(receiver.got().at(3), "1") << "the first one is given up";
+}
+
+TEST(Webhook, ItsTroubleIsSeenUntilItTakesAMessage) {
+  const TemporaryFolder folder;
+  DeadLetters dead(folder.path() / "dead");
+  Receiver receiver;
+  receiver.statuses = {500, 500};
+  Webhook webhook({receiver.url(), ""}, dead, [](const std::string&) {},
+                  {.answer_s = 5, .first_retry_s = 0.5, .tries = 9, .most_waiting = 10});
+  EXPECT_FALSE(webhook.trouble());
+  webhook.push({"t", "1"});
+  std::optional<Trouble> seen;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!(seen = webhook.trouble()) && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->what, "HTTP 500");
+  EXPECT_GE(seen->next_s, seen->since_s + 0.5);
+  EXPECT_TRUE(wait_for_bodies(receiver, 3));
+  while (webhook.trouble() && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_FALSE(webhook.trouble());
+}
+
+TEST(Webhook, AReceiverThatCannotBeReachedUsesUpNoMessages) {
+  const TemporaryFolder folder;
+  DeadLetters dead(folder.path() / "dead");
+  {
+    Webhook webhook({"http://127.0.0.1:1/", ""}, dead, [](const std::string&) {},
+                    {.answer_s = 5, .first_retry_s = 0.01, .tries = 2, .most_waiting = 10});
+    webhook.push({"t", "1"});
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    const auto tries = [&] { return webhook.trouble().value_or(Trouble{}).tries; };
+    while (tries() < 4 && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_GE(tries(), 4);
+    EXPECT_FALSE(fs::exists(folder.path() / "dead")) << "it waits";
+  }
+  EXPECT_THAT(read_file(folder.path() / "dead", 1 << 20), HasSubstr("the daemon ended"));
+}
+
 TEST(Webhook, TheOldestGoWhenTooManyWait) {
   const TemporaryFolder folder;
   DeadLetters dead(folder.path() / "dead");
