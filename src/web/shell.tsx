@@ -77,8 +77,8 @@ function KeyPage({ link }: { link: Extract<Link, { kind: 'key' }> }) {
   return (
     <section class="card key-page">
       <h1>{link.refusal.what}</h1>
-      <p>The daemon shows and does things only for those who have a key. To look from its own machine a link is enough:
-        <code>packmerger keys link</code> prints one.</p>
+      <p>The daemon shows and does things only for those who have a key. To look from its own machine a link is
+        enough: <code>packmerger keys link</code> prints one.</p>
       <HowToGetAKey />
       <KeyForm given={() => undefined} />
     </section>

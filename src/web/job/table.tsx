@@ -16,6 +16,7 @@ interface Row {
   value: (one: Estimate) => number | null;
   text: (value: number, one: Estimate) => string;
   compared: boolean;
+  isShare?: boolean; // of the row above
 }
 
 const paid = (value: number, one: Estimate): string => money(value, one.currency);
@@ -25,9 +26,9 @@ const ROWS: readonly Row[] = [
   { title: 'Model', value: (one) => one.model_g, text: grams, compared: true },
   { title: 'Support', value: (one) => one.support_g, text: grams, compared: true },
   { title: 'Cost', value: (one) => one.cost, text: paid, compared: true },
-  { title: '–\u00a0material', value: (one) => one.material_cost ?? null, text: paid, compared: false },
-  { title: '–\u00a0machine', value: (one) => one.machine_cost ?? null, text: paid, compared: false },
-  { title: '–\u00a0hands', value: (one) => one.hands_cost ?? null, text: paid, compared: false },
+  { title: 'material', value: (one) => one.material_cost ?? null, text: paid, compared: false, isShare: true },
+  { title: 'machine', value: (one) => one.machine_cost ?? null, text: paid, compared: false, isShare: true },
+  { title: 'hands', value: (one) => one.hands_cost ?? null, text: paid, compared: false, isShare: true },
   { title: 'Parts', value: (one) => one.parts, text: String, compared: false },
   { title: 'Trays', value: (one) => one.trays, text: String, compared: false },
   { title: 'Work by hand', value: (one) => one.assembly_min, text: (value) => (value === 0 ? 'none' : duration(60 * value)), compared: false },
@@ -119,7 +120,7 @@ export function EstimateTable({ estimates, prepared, advice, take }: Props) {
             const values = columns.flatMap(({ one }) => (one.fits ? [row.value(one) ?? Infinity] : []));
             return (
               <tr key={row.title}>
-                <th scope="row">{row.title}</th>
+                <th scope="row" class={row.isShare ? 'share' : ''}>{row.title}</th>
                 {columns.map((column) => (
                   <Cell key={column.title} row={row} one={column.one} base={baseColumn?.one} best={values.length > 1 ? Math.min(...values) : NaN}
                         kind={isPrepared(column) ? 'prepared' : ''} />

@@ -74,6 +74,7 @@ describe('the page', { skip: missing }, () => {
     await page.reload();
     await page.getByRole('heading', { name: 'This needs a key' }).waitFor();
     await page.getByText('Key needed').waitFor();
+    assert.match(await page.locator('.key-page').innerText(), /a link is enough: packmerger keys link prints one/);
     assert.equal(await page.locator('.printer').count(), 0);
     await assertAccessible(page, 'the key page');
     await page.getByLabel('Key', { exact: true }).fill(shop.key);

@@ -81,6 +81,8 @@ describe('a proposal', { skip: missing }, () => {
       await look.getByRole('region', { name: 'Why this printer' }).waitFor();
       await assertAccessible(look, `the table, ${width}`);
       await assertNoSideways(look, `the table, ${width}`);
+      const lines = (head) => { const range = document.createRange(); range.selectNodeContents(head); return range.getClientRects().length; };
+      for (const head of await look.locator('th.share').all()) assert.equal(await head.evaluate(lines), 1, `a share of the cost in one line, ${width}`);
       await screenshot(look, `choice-${width}`);
       await look.context().close();
     }
