@@ -8,9 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <utility>
@@ -231,6 +233,20 @@ ProcessResult run_process(const ProcessSpec& spec, double timeout_s, const Progr
       child.signal_group(SIGTERM);
       kill_at = seconds() + 2;
     }
+  }
+}
+
+std::optional<std::filesystem::path> program_in_path(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::string_view rest = path != nullptr ? path : "/bin:/usr/bin";
+  for (;;) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    const std::filesystem::path found = std::filesystem::path(rest.substr(0, end)) / name;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(found, ignored) && ::access(found.c_str(), X_OK) == 0)
+      return found;
+    if (end == rest.size()) return std::nullopt;
+    rest.remove_prefix(end + 1);
   }
 }
 

@@ -78,6 +78,9 @@ ProcessResult run_process(const ProcessSpec& spec, double timeout_s, const Progr
                           const std::function<void(std::string_view)>& on_err_line = {},
                           std::size_t max_output = std::size_t{16} << 20);
 
+// The program that a child of this name would run: the first of $PATH that may be executed.
+std::optional<std::filesystem::path> program_in_path(const std::string& name);
+
 // The folder the running program lies in.
 std::filesystem::path program_folder();
 

@@ -7,6 +7,7 @@
 
 #include "base/duration.h"
 #include "cli/daemon_verb.h"
+#include "tray/warnings_json.h"
 
 namespace packmerger::cli {
 namespace {
@@ -97,8 +98,7 @@ json calibration_json(const Calibration& calibration) {
                                {"after", print.after},
                                {"left_out", or_null(print.left_out)}});
   }
-  for (const Warning& warning : calibration.warnings)
-    told["warnings"].push_back({{"code", warning.code}, {"text", warning.text}});
+  told["warnings"] = warnings_json(calibration.warnings);
   return told;
 }
 

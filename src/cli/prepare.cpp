@@ -7,6 +7,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/names.h"
 #include "cli/late_stop.h"
@@ -16,6 +17,7 @@
 #include "daemon/job_file.h"
 #include "job/comparison_table.h"
 #include "tray/job_json.h"
+#include "tray/known_ways.h"
 #include "tray/write_job_folder.h"
 
 namespace packmerger::cli {
@@ -26,6 +28,7 @@ struct Arguments {
   std::string profile;
   std::string out;
   Variant variant = Variant::kPacked;
+  std::string compared;
   bool json = false;
 };
 
@@ -91,8 +94,10 @@ void run(const Arguments& arguments, const CLI::App& verb) {
   {
     const LateStop late_stop;
     const Progress progress = terminal_progress();
-    job =
-        prepare(profile, plan_options(arguments.plan), arguments.variant, arguments.out, progress);
+    std::optional<KnownWays> known;
+    if (!arguments.compared.empty()) known = known_ways(arguments.compared);
+    job = prepare(profile, plan_options(arguments.plan), arguments.variant, arguments.out, progress,
+                  known);
   }
   if (arguments.json)
     std::cout << json_text(job_json(job));
@@ -120,6 +125,10 @@ void add_prepare(CLI::App& program) {
       ->transform(CLI::CheckedTransformer(variants()).description(""))
       ->type_name(fmt::format("{}", fmt::join(variant_names(), "|")))
       ->default_str("packed");
+  verb->add_option("--compared", arguments->compared,
+                   "a job folder whose comparison is taken where it is of the same model, profile "
+                   "and options; otherwise the ways are compared anew")
+      ->type_name("FOLDER");
   verb->add_flag("--json", arguments->json, "prints job.json instead of the table");
   verb->callback([arguments, verb] { run(*arguments, *verb); });
 }

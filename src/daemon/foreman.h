@@ -207,6 +207,7 @@ class Foreman {
   void propose(JobRecord job, const PrinterConfig& wish, const std::vector<PrinterOffer>& offers);
   std::vector<std::string> prepare_command(const PrinterConfig& printer,
                                            const JobRecord& job) const;
+  std::filesystem::path compared_before(const JobRecord& job) const;
   void start_preparing(const JobRecord& waiting);
   void approve_by_itself(const JobRecord& ready);
   void start_sending(const JobRecord& approved);

@@ -63,7 +63,24 @@ std::vector<std::string> Foreman::prepare_command(const PrinterConfig& printer,
     return argv;
   }
   add(arguments_of(model_options(printer, config_.printer(job.chosen_by), job)));
+  if (const fs::path compared = compared_before(job); !compared.empty())
+    add({"--compared", compared.string()});
   return argv;
+}
+
+// Where the ways of printing this model may have been compared already: what was prepared of this
+// job, or of the one that it makes again. prepare looks whether that still holds.
+fs::path Foreman::compared_before(const JobRecord& job) const {
+  std::vector<fs::path> folders;
+  for (int attempt = job.attempt; attempt > 0; --attempt)
+    folders.push_back(job_path(job.id) / folder_name(attempt));
+  if (const auto old = store_.find(job.again_of); old && !old->folder.empty())
+    folders.emplace_back(old->folder);
+  for (const fs::path& folder : folders) {
+    std::error_code ignored;
+    if (fs::is_regular_file(folder / "job.json", ignored)) return folder;
+  }
+  return {};
 }
 
 Preparer Foreman::preparer_of(const JobRecord& job) {

@@ -2,65 +2,18 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <memory>
 
 #include "base/parallel.h"
-#include "job/choose_division.h"
-#include "job/divide.h"
+#include "job/comparison_key.h"
 #include "job/pack_models.h"
+#include "job/plan_steps.h"
 #include "job/timings.h"
-#include "job/unpacked.h"
 #include "printers/estimate.h"
 #include "printers/slice.h"
-#include "shape/hollow.h"
 
 namespace packmerger {
 namespace {
-
-using DividedModels = std::vector<std::shared_ptr<const Divided>>;
-
-// Copies of one input are divided once.
-DividedModels divide_all(const std::vector<LoadedModel>& loaded, const Profile& profile,
-                         const PlanOptions& options, Warnings& warnings, const Progress& progress) {
-  std::map<const Mesh*, std::shared_ptr<const Divided>> done;
-  DividedModels models;
-  for (const LoadedModel& model : loaded) {
-    std::shared_ptr<const Divided>& divided = done[model.surface.get()];
-    if (!divided) {
-      divided = std::make_shared<const Divided>(
-          options.split ? choose_division(*model.surface, profile, options.hollow, options.seed,
-                                          warnings, progress)
-                        : keep_whole(*model.surface));
-    }
-    models.push_back(divided);
-  }
-  return models;
-}
-
-WholeModels surfaces_of(const std::vector<LoadedModel>& loaded) {
-  WholeModels surfaces;
-  for (const LoadedModel& model : loaded) surfaces.push_back(model.surface);
-  return surfaces;
-}
-
-// The models hollowed in one piece; models that are not divided have not been hollowed yet.
-WholeModels shells_of(const DividedModels& models, const Profile& profile,
-                      const PlanOptions& options, Warnings& warnings, const Progress& progress) {
-  std::map<const Divided*, std::shared_ptr<const Mesh>> done;
-  WholeModels shells;
-  for (const auto& model : models) {
-    std::shared_ptr<const Mesh>& surface = done[model.get()];
-    if (!surface) {
-      const bool to_hollow = options.hollow && !options.split;
-      surface = std::make_shared<const Mesh>(
-          shell_surface(to_hollow ? hollow(model->shell.outer, profile.shape, warnings, progress)
-                                  : model->shell));
-    }
-    shells.push_back(surface);
-  }
-  return shells;
-}
 
 std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const Profile& profile,
                                     const Progress& progress) {
@@ -70,23 +23,16 @@ std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const
                              : estimate(profile, trays, assembly_of(*way), progress);
 }
 
-// Of models that are not divided: the unpacked way whose pieces are those that are packed.
-enum class WholePieces { kNone, kHollow, kSolid };
-
-WholePieces whole_pieces(const DividedModels& models, const PlanOptions& options) {
-  const bool whole = std::all_of(models.begin(), models.end(),
-                                 [](const auto& model) { return model->tets.count() == 0; });
-  if (!whole) return WholePieces::kNone;
-  return options.split ? WholePieces::kHollow : WholePieces::kSolid;
-}
-
-// Takes the other way of standing the same pieces where it is known to cost less.
-void prefer_cheaper(std::optional<Arrangement>& way, std::optional<Estimate>& estimate,
+// Takes the other way of standing the same pieces where it is known to cost less, and says whether
+// it did.
+bool prefer_cheaper(std::optional<Arrangement>& way, std::optional<Estimate>& estimate,
                     const std::optional<Arrangement>& other_way,
                     const std::optional<Estimate>& other) {
-  if (!estimate || !other || estimate->cost <= other->cost || other_way->trays > way->trays) return;
+  if (!estimate || !other || estimate->cost <= other->cost || other_way->trays > way->trays)
+    return false;
   way = other_way;
   estimate = other;
+  return true;
 }
 
 bool same_poses(const Arrangement& a, const Arrangement& b) {
@@ -128,11 +74,14 @@ void compare_ways(Plan& plan, const std::optional<Arrangement>& as_is, WholePiec
   if (stands_best) comparison.as_is = comparison.solid;
   // The slicer need not agree with the ranking of the six ways up, of which the file's own is one,
   // nor with the packer.
-  prefer_cheaper(plan.solid, comparison.solid, as_is, comparison.as_is);
+  ComparedWays& compared = plan.job.compared;
+  compared.solid_as_is = prefer_cheaper(plan.solid, comparison.solid, as_is, comparison.as_is);
   if (pieces == WholePieces::kSolid)
-    prefer_cheaper(plan.packed, comparison.packed, plan.solid, comparison.solid);
+    compared.packed_apart =
+        prefer_cheaper(plan.packed, comparison.packed, plan.solid, comparison.solid);
   if (pieces == WholePieces::kHollow)
-    prefer_cheaper(plan.packed, comparison.packed, plan.hollow, comparison.hollow);
+    compared.packed_apart =
+        prefer_cheaper(plan.packed, comparison.packed, plan.hollow, comparison.hollow);
 }
 
 void drop_repeated(Warnings& warnings) {
@@ -146,11 +95,14 @@ void drop_repeated(Warnings& warnings) {
   warnings = std::move(once);
 }
 
+std::string key_of(const Job& job, const PlanOptions& options) {
+  std::vector<std::string> hashes;
+  for (const JobInput& input : job.inputs) hashes.push_back(input.sha256);
+  return comparison_sha256(job.profile, options, hashes);
+}
+
 void record(Job& job, const std::vector<LoadedModel>& loaded, const DividedModels& models) {
-  for (const LoadedModel& model : loaded) {
-    job.inputs.push_back(model.input);
-    job.models.push_back(*model.surface);
-  }
+  record_inputs(job, loaded);
   for (const auto& model : models) {
     job.shell_volume_mm3 += model->shell.volume_mm3;
     job.tetrahedra += model->tets.count();
@@ -194,6 +146,8 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   });
 
   drop_repeated(warnings);
+  plan.job.compared.sha256 = key_of(plan.job, options);
+  plan.job.compared.warnings = warnings;
   return plan;
 }
 

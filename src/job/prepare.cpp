@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "job/plan_known.h"
 #include "job/promises.h"
 #include "job/timings.h"
 #include "printers/packing_cost.h"
@@ -98,9 +99,12 @@ std::vector<TrayFiles> programs(Job& job, const std::vector<Tray>& trays,
 }  // namespace
 
 Job prepare(const Profile& profile, const PlanOptions& options, Variant variant,
-            const std::filesystem::path& out, const Progress& progress) {
+            const std::filesystem::path& out, const Progress& progress,
+            const std::optional<KnownWays>& known) {
   check_job_folder(out);
-  Plan planned = plan(profile, options, progress);
+  std::optional<Plan> of_known;
+  if (known) of_known = plan_known(profile, options, *known, variant, progress);
+  Plan planned = of_known ? std::move(*of_known) : plan(profile, options, progress);
   const Variant chosen = decide(variant, planned);
   Arrangement arrangement = take(planned, chosen);
   const std::vector<Tray> trays = trays_of(arrangement);

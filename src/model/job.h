@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/compared_ways.h"
 #include "model/estimate.h"
 #include "model/mesh.h"
 #include "model/printer.h"
@@ -62,6 +63,7 @@ struct Job {
   std::optional<double> resample_tolerance_mm;
 
   Comparison estimates;
+  ComparedWays compared;                                  // how they were found
   std::vector<std::pair<std::string, double>> timings_s;  // stage, seconds, in order
   Warnings warnings;
 };

@@ -4,6 +4,8 @@
 
 #include "base/files.h"
 #include "model/profile_keys.h"
+#include "tray/known_ways.h"
+#include "tray/warnings_json.h"
 
 namespace packmerger {
 namespace {
@@ -112,13 +114,12 @@ Json job_json(const Job& job) {
       {"estimates", comparison_json(job.estimates)},
       {"advice", advice_json(job.advised, job.advice)},
       {"timings_s", Json::object()},
-      {"warnings", Json::array()}};
+      {"compared", compared_json(job.compared)},
+      {"warnings", warnings_json(job.warnings)}};
   for (const JobPart& part : job.parts) report["parts"].push_back(part_json(part));
   if (!job.removal_paths.empty()) report["removal_path"] = removal_paths_json(job.removal_paths);
   if (job.resample_tolerance_mm) report["resample_tolerance_mm"] = *job.resample_tolerance_mm;
   for (const auto& [stage, seconds] : job.timings_s) report["timings_s"][stage] = seconds;
-  for (const Warning& warning : job.warnings)
-    report["warnings"].push_back({{"code", warning.code}, {"text", warning.text}});
   return report;
 }
 

@@ -1,6 +1,7 @@
 #include "tray/program_folder.h"
 
 #include "tray/job_json.h"
+#include "tray/warnings_json.h"
 #include "tray/write_job_folder.h"
 
 namespace packmerger {
@@ -35,9 +36,7 @@ std::string program_report(const ReadyProgram& program) {
         {"converted", program.converted}}},
       {"parts", Json::array()},
       {"estimates", estimates_json(program)},
-      {"warnings", Json::array()}};
-  for (const Warning& warning : program.warnings)
-    report["warnings"].push_back({{"code", warning.code}, {"text", warning.text}});
+      {"warnings", warnings_json(program.warnings)}};
   return json_text(report);
 }
 

@@ -115,6 +115,25 @@ set = ["tabu_patience=1", "tabu_samples=2"]
                 codes = [warning["code"] for warning in told["warnings"]]
                 self.assertEqual("sealed_cavity" in codes, variant == "hollow", "only a hollow ball in one piece traps support")
 
+        # a known comparison is not made again, and nothing of the folder is another for that
+        for variant, known, more in (("solid", "hollow", ()), ("hollow", "solid", ()),
+                                     ("packed", "whole", ("--no-split",))):
+            if more:
+                for name, way in (("whole", "solid"), ("packed", "packed")):
+                    self.prepare("--profile", "objet30", "--variant", way, *more, out=name)
+            again = self.prepare("--profile", "objet30", "--variant", variant, *more,
+                                 "--compared", self.folder / known, out=f"{variant}-again")
+            self.assertIn("arrange", again["timings_s"], "it was compared once more")
+            self.assertEqual(self.content(variant), self.content(f"{variant}-again"), variant)
+
+    def content(self, out):
+        """The bytes of a job folder's files, times left out."""
+        content = {path.relative_to(self.folder / out): path.read_bytes()
+                   for path in (self.folder / out).rglob("*") if path.is_file()}
+        told = json.loads(content.pop(pathlib.Path("job.json")))
+        self.assertGreater(len(told.pop("timings_s")), 2)
+        return content, told
+
     def test_another_program_finds_the_parts_in_place(self):
         told = self.prepare("--profile", "objet30")
         self.assertGreater(len(told["parts"]), 1, "or there is nothing to be put in place")

@@ -33,6 +33,11 @@ TEST(Process, TellsTheSignalThatEndedIt) {
   EXPECT_EQ(run_process(shell("kill -SEGV $$"), 0, Progress()).status.signal, SIGSEGV);
 }
 
+TEST(Process, APathIsSearchedAsAChildWouldBe) {
+  EXPECT_TRUE(program_in_path("sh").value_or("").is_absolute());
+  EXPECT_FALSE(program_in_path("no-such-program-anywhere"));
+}
+
 TEST(Process, MissingProgramIsAnError) {
   ProcessSpec spec;
   spec.argv = {"no-such-program-anywhere"};

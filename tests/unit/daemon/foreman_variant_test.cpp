@@ -8,6 +8,8 @@ namespace packmerger {
 namespace {
 
 using testing::Contains;
+using testing::IsSupersetOf;
+using testing::Not;
 
 json wanted(std::int64_t id, const char* variant) {
   return {{"verb", "jobs.prepare"}, {"id", id}, {"variant", variant}};
@@ -24,6 +26,8 @@ TEST(Variant, AJobThatIsReadyIsPreparedAnew) {
   const PrepareOrder second = shop.prepare_order().value();
   EXPECT_THAT(second.argv, Contains("hollow"));
   EXPECT_NE(second.out, first.out);
+  EXPECT_THAT(first.argv, Not(Contains("--compared")));
+  EXPECT_THAT(second.argv, IsSupersetOf({std::string("--compared"), first.out.string()}));
   EXPECT_EQ(shop.view(1).at("doubt"), nullptr);
   shop.prepare(second);
   EXPECT_EQ(shop.job(1).trays, 1);
@@ -90,7 +94,8 @@ TEST(Variant, AnEndedJobBecomesANewOne) {
   EXPECT_EQ(anew.at("result").at("id"), 3) << "job 2 has no model itself";
   EXPECT_EQ(shop.job(2).state, JobState::kCancelled);
   shop.run_the_clerk();
-  EXPECT_THAT(shop.prepare_order()->argv, Contains("solid"));
+  EXPECT_THAT(shop.prepare_order()->argv,
+              IsSupersetOf({std::string("solid"), std::string("--compared"), shop.job(1).folder}));
 }
 
 TEST(Variant, WhatIsHeldStaysHeldInTheNewJob) {

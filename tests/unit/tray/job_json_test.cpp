@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/files.h"
+#include "tray/known_ways.h"
 #include "unit/tray/sample_job.h"
 
 namespace packmerger {
@@ -162,6 +163,41 @@ TEST(JobJson, OptionalKeysAreThereOnlyWhereTheySaySomething) {
   json = job_json(job);
   EXPECT_EQ(json["removal_path"]["3"], Json::parse("[[0.0,0.0,5.0],[2.0,0.0,5.0]]"));
   EXPECT_EQ(json["resample_tolerance_mm"], 0.3);
+}
+
+TEST(KnownWays, AreReadBackAsTheyWereWritten) {
+  Job job = fixtures::sample_job();
+  job.compared = {std::string(64, 'c'), {{"sealed_cavity", "It traps support."}}, true, false};
+  job.estimates.solid = Estimate{};
+  job.estimates.solid->cost = 1.0 / 3;
+  job.clusters = 40;
+  job.resample_tolerance_mm = 0.3;
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "job.json";
+  write_file_whole(file, json_text(job_json(job)));
+  const std::optional<KnownWays> known = known_ways(folder.path());
+  ASSERT_TRUE(known);
+  EXPECT_EQ(compared_json(known->compared), compared_json(job.compared));
+  EXPECT_EQ(comparison_json(known->estimates), comparison_json(job.estimates));
+  EXPECT_EQ(known->clusters, 40);
+  EXPECT_EQ(known->resample_tolerance_mm, 0.3);
+}
+
+TEST(KnownWays, AreNoneWhereTheyCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(known_ways(folder.path()));
+  Json json = job_json(fixtures::sample_job());
+  for (const char* key : {"compared", "segments", "estimates"}) {
+    Json wrong = json;
+    wrong[key] = {{"packed", 7}};
+    write_file_whole(folder.path() / "job.json", json_text(wrong));
+    EXPECT_FALSE(known_ways(folder.path())) << key;
+  }
+  json.erase("compared");  // as an earlier version wrote it
+  for (const std::string& text : {json_text(json), std::string("{"), std::string("[1]")}) {
+    write_file_whole(folder.path() / "job.json", text);
+    EXPECT_FALSE(known_ways(folder.path())) << text;
+  }
 }
 
 TEST(JobJson, NamesThatAreNotUtf8DoNotStopIt) {

@@ -1,0 +1,68 @@
+#include "job/plan_steps.h"
+
+#include <algorithm>
+#include <map>
+
+#include "job/choose_division.h"
+#include "shape/hollow.h"
+
+namespace packmerger {
+
+DividedModels divide_each(const std::vector<LoadedModel>& loaded,
+                          const std::function<Divided(const Mesh&)>& divide) {
+  std::map<const Mesh*, std::shared_ptr<const Divided>> done;
+  DividedModels models;
+  for (const LoadedModel& model : loaded) {
+    std::shared_ptr<const Divided>& divided = done[model.surface.get()];
+    if (!divided) divided = std::make_shared<const Divided>(divide(*model.surface));
+    models.push_back(divided);
+  }
+  return models;
+}
+
+DividedModels divide_all(const std::vector<LoadedModel>& loaded, const Profile& profile,
+                         const PlanOptions& options, Warnings& warnings, const Progress& progress) {
+  return divide_each(loaded, [&](const Mesh& surface) {
+    if (!options.split) return keep_whole(surface);
+    return choose_division(surface, profile, options.hollow, options.seed, warnings, progress);
+  });
+}
+
+WholeModels surfaces_of(const std::vector<LoadedModel>& loaded) {
+  WholeModels surfaces;
+  for (const LoadedModel& model : loaded) surfaces.push_back(model.surface);
+  return surfaces;
+}
+
+WholeModels shells_of(const DividedModels& models, const Profile& profile,
+                      const PlanOptions& options, Warnings& warnings, const Progress& progress) {
+  std::map<const Divided*, std::shared_ptr<const Mesh>> done;
+  WholeModels shells;
+  for (const auto& model : models) {
+    std::shared_ptr<const Mesh>& surface = done[model.get()];
+    if (!surface) {
+      const bool to_hollow = options.hollow && !options.split;
+      surface = std::make_shared<const Mesh>(
+          shell_surface(to_hollow ? hollow(model->shell.outer, profile.shape, warnings, progress)
+                                  : model->shell));
+    }
+    shells.push_back(surface);
+  }
+  return shells;
+}
+
+WholePieces whole_pieces(const DividedModels& models, const PlanOptions& options) {
+  const bool whole = std::all_of(models.begin(), models.end(),
+                                 [](const auto& model) { return model->tets.count() == 0; });
+  if (!whole) return WholePieces::kNone;
+  return options.split ? WholePieces::kHollow : WholePieces::kSolid;
+}
+
+void record_inputs(Job& job, const std::vector<LoadedModel>& loaded) {
+  for (const LoadedModel& model : loaded) {
+    job.inputs.push_back(model.input);
+    job.models.push_back(*model.surface);
+  }
+}
+
+}  // namespace packmerger
