@@ -33,8 +33,20 @@ std::string title(const JobRecord& job) { return "Job " + std::to_string(job.id)
 
 }  // namespace
 
-Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log)
-    : config_(config), store_(store), clerk_(clerk), log_(std::move(log)) {}
+std::optional<DiskSpace> disk_space(const fs::path& place) {
+  struct statvfs disk {};
+  if (::statvfs(place.c_str(), &disk) != 0) return std::nullopt;
+  return DiskSpace{std::uint64_t{disk.f_blocks} * disk.f_frsize,
+                   std::uint64_t{disk.f_bavail} * disk.f_frsize};
+}
+
+Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log,
+                 Measure measure)
+    : config_(config),
+      store_(store),
+      clerk_(clerk),
+      log_(std::move(log)),
+      measure_(std::move(measure)) {}
 
 void Cleaner::serve(double now_s) {
   if (!deleting_.empty() || now_s < next_s_) return;
@@ -50,12 +62,11 @@ void Cleaner::serve(double now_s) {
 // An upload of the largest kind must find its place, on a small disk one of a tenth of it.
 void Cleaner::look_at_room() {
   room_.reset();
-  struct statvfs disk {};
-  if (::statvfs(config_.state.c_str(), &disk) != 0) return;
-  const std::uint64_t size = std::uint64_t{disk.f_blocks} * disk.f_frsize;
-  room_ = Room{
-      std::uint64_t{disk.f_bavail} * disk.f_frsize,
-      std::max(kLeastWanted, std::min(kLeastWanted + config_.web.most_upload_bytes, size / 10))};
+  const std::optional<DiskSpace> disk = measure_(config_.state);
+  if (!disk) return;
+  room_ = Room{disk->free_bytes,
+               std::max(kLeastWanted,
+                        std::min(kLeastWanted + config_.web.most_upload_bytes, disk->bytes / 10))};
   if (room_->is_low() && !told_low_)
     log_(fmt::format("the disk with {} has only {:.1f} GiB left{}", config_.state.string(),
                      gib(room_->free_bytes),

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -16,6 +17,13 @@
 #include "job/job_store.h"
 
 namespace packmerger {
+
+struct DiskSpace {
+  std::uint64_t bytes = 0;
+  std::uint64_t free_bytes = 0;  // for whoever asks
+};
+// Of the disk that holds this place; nothing where the system does not tell.
+std::optional<DiskSpace> disk_space(const std::filesystem::path& place);
 
 // Of the disk with the state folder.
 struct Room {
@@ -35,9 +43,11 @@ struct Announced {
 class Cleaner {
  public:
   using Log = std::function<void(const std::string&)>;
+  using Measure = std::function<std::optional<DiskSpace>(const std::filesystem::path&)>;
 
   // Everything must outlive it.
-  Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log);
+  Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log,
+          Measure measure = disk_space);
 
   // Looks from time to time. now_s: a clock that never goes back.
   void serve(double now_s);
@@ -64,6 +74,7 @@ class Cleaner {
   JobStore& store_;
   Queue<ClerkOrder>& clerk_;
   Log log_;
+  Measure measure_;
   std::optional<Room> room_;
   std::optional<Announced> announced_;
   std::map<std::int64_t, std::string> deleting_;  // with the clerk; the folder of each

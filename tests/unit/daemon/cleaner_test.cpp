@@ -93,6 +93,35 @@ TEST_F(Cleaning, IsAnnouncedForAWeekAfterAnUpgradeOrALeapOfTheClock) {
   EXPECT_EQ(storage().at("announced"), nullptr);
 }
 
+// Whatever the settings keep, and before an announced week is over: a disk that is full of old jobs
+// refuses no new one.
+TEST_F(Cleaning, TheOldestGoWhereTheDiskGetsFullButNoneOfTheLastDay) {
+  const std::int64_t old = printed(3), new_one = printed(0.5);
+  shop_.config_.keep_jobs = shop_.config_.keep_days = 0;
+  shop_.config_.web.most_upload_bytes = std::uint64_t{1} << 30;
+  Queue<ClerkOrder> clerk;
+  DiskSpace disk{std::uint64_t{100} << 30, std::uint64_t{4} << 30};
+  std::string log;
+  Cleaner cleaner(
+      shop_.config_, *shop_.store_, clerk, [&](const std::string& line) { log += line + "\n"; },
+      [&](const fs::path&) { return disk; });
+  double now_s = 0;
+  const auto look = [&](double free_gib) {
+    disk.free_bytes = static_cast<std::uint64_t>(free_gib * (1 << 30));
+    cleaner.serve(now_s += 60);
+    return clerk.try_pop();
+  };
+  EXPECT_FALSE(look(3.5));
+  EXPECT_FALSE(cleaner.room()->is_low());
+  EXPECT_FALSE(look(2));
+  EXPECT_THAT(log, testing::HasSubstr("has only 2.0 GiB left\n")) << "people are warned early";
+  const auto order = look(1.4);
+  ASSERT_TRUE(order);
+  EXPECT_THAT(std::get<DeleteOrder>(*order).jobs, testing::ElementsAre(old));
+  cleaner.on(Deleted{{old}, {}});
+  EXPECT_FALSE(look(1.4)) << "job " << new_one << " ended today";
+}
+
 TEST_F(Cleaning, AJobPrintedAgainNeedsTheFolder) {
   const std::int64_t old = printed(100);
   shop_.foreman_->hold(shop_.foreman_->again(old).id);
