@@ -17,6 +17,8 @@ constexpr double kBusyPatience_s = 6;
 constexpr double kBusiesMissed = 3;
 // A command that blocks longer than usual without a word is given this many time-outs.
 constexpr double kLongFactor = 5;
+// What still waits for its user so long after an answer has not heard it.
+constexpr double kAnswerHeard_s = 5;
 // After so many lines M105 proves that no ok was one too many; sooner where some were.
 constexpr std::size_t kLinesPerProof = 100;
 constexpr std::size_t kLinesPerProofInDoubt = 4;
@@ -116,7 +118,7 @@ void GcodeStream::handle_busy(const GcodeReply& reply) {
   if (!stands_still()) busy_interval_s_ = std::max(busy_interval_s_, interval_s);
   if (cancelling_)
     hear_while_cancelling(reply);
-  else if (reply.waiting)
+  else if (reply.waiting && now - answered_at_s_ >= kAnswerHeard_s)
     reporter_.state(PrintState::kWaiting, prompt_, choices_);
 }
 

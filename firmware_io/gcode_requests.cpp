@@ -29,10 +29,16 @@ void GcodeStream::obey_requests() {
     if (!*wanted || !paused_) pause_text_.clear();
     paused_ = *wanted;
   }
-  const int answer = control_.take_answer();
-  if (answer < 0 || cancelling_) return;
+  if (const int answer = control_.take_answer(); answer >= 0 && !cancelling_) pass_on(answer);
+}
+
+// The question is shown no longer, or it would be answered twice, and the second time another one:
+// firmwares that go on say nothing for a while. It comes back where the printer still waits.
+void GcodeStream::pass_on(int answer) {
   send_raw(abilities_.emergency_parser ? "M876 S" + std::to_string(answer) : std::string("M108"));
-  if (between_) close_question();
+  answered_at_s_ = channel_.now_s();
+  if (between_) return close_question();
+  stands_still() ? reporter_.state(PrintState::kPaused, pause_text_) : show_state();
 }
 
 bool GcodeStream::stands_still() const { return between_ || (paused_ && !parks_); }

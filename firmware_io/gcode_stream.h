@@ -114,6 +114,7 @@ class GcodeStream {
   [[noreturn]] void stop_at_once();
   void handle_action(const GcodeReply& reply);
   std::size_t pause(std::size_t number);
+  void pass_on(int answer);
   bool stands_still() const;
   void close_question();
   void show_pause();
@@ -146,6 +147,7 @@ class GcodeStream {
   bool busy_seen_ = false;            // the printer says when it is busy
   std::string prompt_;                // what the printer asks its user,
   std::vector<std::string> choices_;  // and the answers it offers
+  double answered_at_s_ = 0;
   std::string complaint_;             // an error line that neither an ok nor a Resend followed
   std::vector<std::string> unknown_;  // words of commands that the printer does not know
   std::vector<Insertion> inserted_;

@@ -50,6 +50,71 @@ class Questions : public ::testing::Test {
   std::vector<std::string> program = gcode_program(3000);
 };
 
+// Asks once, in line 2, and then loads filament for twenty seconds without a word but "busy".
+class Loader : public simulated::Firmware {
+ public:
+  explicit Loader(int deaf) : deaf_(deaf) {}  // to so many answers
+  int answers = 0;
+
+  void receive(std::string_view bytes, double now_s) override {
+    for (const char c : bytes) {
+      if (c != '\n')
+        line_ += c;
+      else if (!line_.empty())
+        take(std::exchange(line_, {}), now_s);
+    }
+  }
+  void advance(double now_s) override {
+    if (now_s >= next_busy_s_) {
+      output_ += asks_ ? "echo:busy: paused for user\n" : "echo:busy: processing\n";
+      next_busy_s_ = now_s + 2;
+    }
+    if (now_s < loaded_s_) return;
+    output_ += "ok\nok\n";  // M600 and M876
+    loaded_s_ = next_busy_s_ = simulated::kNever;
+  }
+  double next_event_s() const override { return std::min(next_busy_s_, loaded_s_); }
+
+ private:
+  void take(const std::string& line, double now_s) {
+    if (line.starts_with("N2 ")) {
+      output_ += "//action:prompt_begin Parked\n//action:prompt_button Continue\n";
+      asks_ = true;
+      next_busy_s_ = now_s + 2;
+    } else if (line.starts_with("M876")) {
+      if (++answers <= deaf_) return;
+      if (std::exchange(asks_, false)) loaded_s_ = now_s + 20;
+    } else if (line.find("M114") != std::string::npos) {
+      output_ += "X:0 Y:0 Z:0 E:0\nok\n";
+    } else if (line == "M115") {
+      output_ += "FIRMWARE_NAME:Loader\nCap:EMERGENCY_PARSER:1\nok\n";
+    } else if (next_busy_s_ == simulated::kNever) {
+      output_ += "ok\n";
+    }
+  }
+
+  int deaf_;
+  bool asks_ = false;
+  double next_busy_s_ = simulated::kNever;
+  double loaded_s_ = simulated::kNever;
+  std::string line_;
+};
+
+// Whoever answers whatever is shown answers once; where the answer got lost, it is asked again.
+TEST(AnsweredQuestions, AreShownNoLongerUnlessThePrinterStillWaits) {
+  for (const int deaf : {0, 1}) {
+    Loader loader(deaf);
+    FaultyPort line(loader);
+    PrintControl person;
+    const auto failure =
+        print(line, true, "G21\nM600\nG1 X1\n", person, [&](const PrintReport& report) {
+          if (report.state == PrintState::kWaiting && !report.choices.empty()) person.answer(0);
+        });
+    EXPECT_FALSE(failure) << failure->what();
+    EXPECT_EQ(loader.answers, deaf + 1);
+  }
+}
+
 TEST_F(Questions, AreNotHiddenByAPause) {
   print(
       [&] {
