@@ -88,6 +88,21 @@ void tell_start(const nlohmann::json& reply) {
   fmt::print(stderr, "{}.\n", text);
 }
 
+std::string trouble_text(const nlohmann::json& trouble) {
+  std::string text = text_of(trouble, "what");
+  text += " (since " + time_text(trouble.value("since_s", nlohmann::json()));
+  if (const int tries = trouble.value("tries", 0); tries > 1)
+    text += fmt::format(", {} tries", tries);
+  if (const nlohmann::json next = trouble.value("next_s", nlohmann::json()); next.is_number())
+    text += ", next " + time_text(next).substr(11);
+  return text + ")";
+}
+
+void tell_troubles(const DaemonArguments& arguments) {
+  for (const nlohmann::json& trouble : ask(arguments, {{"verb", "troubles"}}))
+    fmt::print(stderr, "{}: {}\n", text_of(trouble, "about"), trouble_text(trouble));
+}
+
 std::string correction_text(const nlohmann::json& correction) {
   return fmt::format("{:.2f} times as long ({:.2f} to {:.2f}, {} prints)",
                      correction.value("factor", 1.0), correction.value("low", 1.0),

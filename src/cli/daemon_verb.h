@@ -41,6 +41,12 @@ std::string text_of(const nlohmann::json& object, const char* key);
 // Tells the print that an action started at once, where it started one.
 void tell_start(const nlohmann::json& reply);
 
+// A trouble as the daemon tells it: "nobody answers (since 2026-03-01 14:05, 7 tries, next 14:21)".
+std::string trouble_text(const nlohmann::json& trouble);
+
+// What else the daemon cannot do now (its database, who is told of changes), on standard error.
+void tell_troubles(const DaemonArguments& arguments);
+
 // What finished prints taught, as the daemon tells it: "1.12 times as long (1.05 to 1.20, 7
 // prints)".
 std::string correction_text(const nlohmann::json& correction);

@@ -174,6 +174,8 @@ void show(const Arguments& arguments) {
   print_line("state", text_of(job, "state"));
   print_line("status", text_of(job, "status"));
   print_line("hint", text_of(job, "hint"));
+  if (const json trouble = job.value("trouble", json()); trouble.is_object())
+    print_line("trouble", trouble_text(trouble));
   if (const json print = job.value("progress", json());
       print.is_object() && text_of(job, "state") == "sending")
     print_line("print", print_text(print));
@@ -228,6 +230,7 @@ void add_jobs(CLI::App& program) {
   list_all->callback([arguments] {
     list(*arguments);
     tell_storage(*arguments);
+    tell_troubles(arguments->daemon);
   });
   const auto with_id = [&](CLI::App* one) {
     one->add_option("ID", arguments->id, "the job's number")->required()->check(counted_from_one());

@@ -50,8 +50,8 @@ std::vector<std::string> row_of(const json& printer) {
   const json print = printer.value("print", json());
   if (print.is_object()) doing += ": " + print_text(print);
   if (printer.value("paused", false)) doing += ", paused";
-  if (const std::string trouble = text_of(printer, "trouble"); !trouble.empty())
-    doing += "; " + trouble;
+  for (const json& trouble : printer.value("troubles", json::array()))
+    doing += "; " + trouble_text(trouble);
   const json connected = printer.value("connected", json());
   const std::string port = text_of(printer, "port");
   return {text_of(printer, "name"),
@@ -78,6 +78,7 @@ void list(const Arguments& arguments) {
     fmt::print(stderr,
                "No printer is configured: add a table [printer.NAME] to the daemon's settings "
                "(man 5 packmergerd.toml), and reload it.\n");
+  tell_troubles(arguments.daemon);
 }
 
 void change(const Arguments& arguments, const std::string& verb) {

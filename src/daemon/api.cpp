@@ -116,7 +116,8 @@ json stop_printer(Foreman& foreman, const json& request) {
 json whole_state(Foreman& foreman, const json& request) {
   return {{"jobs", list_jobs(foreman, request)},
           {"printers", list_printers(foreman, request)},
-          {"storage", storage_view(foreman)}};
+          {"storage", storage_view(foreman)},
+          {"troubles", troubles_view(foreman)}};
 }
 
 const std::map<std::string, Verb, std::less<>>& verbs() {
@@ -132,6 +133,7 @@ const std::map<std::string, Verb, std::less<>>& verbs() {
       {"jobs.delete", change_job<&Foreman::remove>},
       {"printers.list", list_printers},
       {"storage", [](Foreman& foreman, const json&) { return storage_view(foreman); }},
+      {"troubles", [](Foreman& foreman, const json&) { return troubles_view(foreman); }},
       {"state", whole_state},
       {"printers.clear", clear_printer},
       {"printers.pause", pause_printer<true>},

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/backoff.h"
 #include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/move_file.h"
@@ -19,6 +20,7 @@ constexpr double kAnnounced_s = 7 * kDay_s;
 constexpr double kLeap_s =
     30 * kDay_s;  // between two looks: the daemon was off, or the clock leapt
 constexpr int kAtATime = 10;
+constexpr int kDoublings = 7;  // of the pause before what was left is deleted after all
 constexpr std::uint64_t kLeastWanted = std::uint64_t{512} << 20;
 constexpr const char* kFrom = "cleaning_from_s";  // what is remembered
 constexpr const char* kLooked = "cleaning_looked_s";
@@ -49,6 +51,7 @@ Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>&
       measure_(std::move(measure)) {}
 
 void Cleaner::serve(double now_s) {
+  now_s_ = now_s;
   if (!deleting_.empty() || now_s < next_s_) return;
   next_s_ = now_s + kLookEvery_s;
   const double wall_s = wall_clock_s();
@@ -56,7 +59,27 @@ void Cleaner::serve(double now_s) {
   announce(wall_s);
   double until_s = announced_ ? 0 : kept_since_s(wall_s);
   if (room_ && room_->is_short()) until_s = std::max(until_s, wall_s - kDay_s);
-  if (until_s > 0) order(store_.deletable(until_s, kAtATime + static_cast<int>(failed_.size())));
+  std::vector<JobRecord> jobs;
+  if (until_s > 0) jobs = store_.deletable(until_s, kAtATime + static_cast<int>(left_.size()));
+  add_wanted(jobs);
+  std::erase_if(left_, [&](const auto& left) {
+    return std::none_of(jobs.begin(), jobs.end(),
+                        [&](const JobRecord& job) { return job.id == left.first; });
+  });
+  if (left_.empty()) trouble_.reset();
+  order(jobs);
+}
+
+// Those that somebody deleted, as long as nobody needs their folders again.
+void Cleaner::add_wanted(std::vector<JobRecord>& jobs) const {
+  for (const std::int64_t id : wanted_) {
+    const std::optional<JobRecord> job = store_.find(id);
+    const std::vector<JobRecord> sharing = job ? store_.sharing(*job) : std::vector<JobRecord>();
+    if (std::all_of(sharing.begin(), sharing.end(), [](const JobRecord& one) {
+          return has_ended(one.state) && one.filing_done && one.deleted_s == 0;
+        }))
+      jobs.insert(jobs.end(), sharing.begin(), sharing.end());
+  }
 }
 
 // An upload of the largest kind must find its place, on a small disk one of a tenth of it.
@@ -123,14 +146,16 @@ void Cleaner::remove(const JobRecord& job) {
   for (const JobRecord& other : sharing)
     if (!other.filing_done)
       throw Error(Fault::kBusy, title(other) + " is just being filed", "Try again in a moment.");
-  failed_.erase(job.id);
+  left_.erase(job.id);
+  wanted_.insert(job.id);
   order({job});
 }
 
 void Cleaner::order(const std::vector<JobRecord>& jobs) {
   DeleteOrder wanted;
   for (const JobRecord& job : jobs) {
-    if (failed_.contains(job.id)) continue;
+    if (const auto left = left_.find(job.id); left != left_.end() && now_s_ < left->second.retry_s)
+      continue;
     for (const JobRecord& other : store_.sharing(job)) {
       if (!deleting_.try_emplace(other.id, other.folder).second) continue;
       wanted.jobs.push_back(other.id);
@@ -142,22 +167,39 @@ void Cleaner::order(const std::vector<JobRecord>& jobs) {
 
 void Cleaner::on(const Deleted& event) {
   for (const std::int64_t id : event.jobs) {
-    const std::optional<JobRecord> found = store_.find(id);
-    if (event.failure) {
-      failed_.insert(id);
-    } else if (found) {
-      JobRecord job = *found;
-      job.deleted_s = wall_clock_s();
-      store_.save(job, "its folder was deleted");
+    if (std::optional<JobRecord> job = store_.find(id)) {
+      job->deleted_s = wall_clock_s();
+      store_.save(*job, "its folder was deleted");
     }
     deleting_.erase(id);
+    left_.erase(id);
+    wanted_.erase(id);
   }
-  if (event.failure)
-    log_("not deleted: " + printable(event.failure->what) + ". " + event.failure->hint);
-  else
+  if (!event.jobs.empty())
     log_(fmt::format("the folders of {} ended jobs were deleted, {} the first", event.jobs.size(),
                      event.jobs.front()));
+  if (event.failure) put_off(event);
+  if (left_.empty()) trouble_.reset();
   next_s_ = 0;
+}
+
+// Told in one line until all of them could be deleted.
+void Cleaner::put_off(const Deleted& event) {
+  const std::string why = printable(event.failure->what) + ". " + event.failure->hint;
+  double pause_s = 0;
+  for (const std::int64_t id : event.left) {
+    deleting_.erase(id);
+    Left& left = left_[id];
+    pause_s = backoff_s(config_.retry_s, left.failures++, kDoublings);
+    left.retry_s = now_s_ + pause_s;
+  }
+  if (!trouble_) {
+    log_("not deleted: " + why);
+    trouble_ = Trouble{{}, wall_clock_s(), 0, 0};
+  }
+  trouble_->what = fmt::format("{} folders cannot be deleted: {}", left_.size(), why);
+  ++trouble_->tries;
+  trouble_->next_s = wall_clock_s() + pause_s;
 }
 
 bool Cleaner::is_gone(const JobRecord& job) const {

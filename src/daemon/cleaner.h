@@ -63,12 +63,16 @@ class Cleaner {
 
   const std::optional<Room>& room() const { return room_; }  // nothing: the system does not tell
   const std::optional<Announced>& announced() const { return announced_; }
+  // Folders that cannot be deleted, and are tried again ever less often.
+  const std::optional<Trouble>& trouble() const { return trouble_; }
 
  private:
   void look_at_room();
   void announce(double wall_s);
   double kept_since_s(double wall_s) const;
   void order(const std::vector<JobRecord>& jobs);
+  void add_wanted(std::vector<JobRecord>& jobs) const;
+  void put_off(const Deleted& event);
 
   const DaemonConfig& config_;
   JobStore& store_;
@@ -78,7 +82,14 @@ class Cleaner {
   std::optional<Room> room_;
   std::optional<Announced> announced_;
   std::map<std::int64_t, std::string> deleting_;  // with the clerk; the folder of each
-  std::set<std::int64_t> failed_;                 // until the next start
+  struct Left {
+    int failures = 0;
+    double retry_s = 0;  // not before, on the clock of serve()
+  };
+  std::map<std::int64_t, Left> left_;  // jobs whose folders could not be deleted
+  std::set<std::int64_t> wanted_;      // deleted by somebody, and still there
+  std::optional<Trouble> trouble_;
+  double now_s_ = 0;
   double next_s_ = 0;
   bool told_low_ = false;
   bool told_announced_ = false;

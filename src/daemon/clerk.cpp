@@ -40,9 +40,9 @@ void fetch_settings(const FetchOrder& order) {
 }
 
 // A copy whose original cannot be removed is taken back: the file would be found again.
-void copy_here(const FetchOrder& order) {
+void copy_here(const FetchOrder& order, const std::function<void()>& on_block) {
   fetch_settings(order);
-  copy_file_whole(order.from, order.to);
+  copy_file_whole(order.from, order.to, on_block);
   if (order.keep) return;
   if (::unlink(order.from.c_str()) == 0) {
     if (order.with_settings) ::unlink(settings_beside(order.from).c_str());
@@ -57,8 +57,8 @@ void copy_here(const FetchOrder& order) {
 }
 
 // The model first: where its name is taken by now, nothing of it may have been put there.
-void put_away(const FileOrder& order) {
-  if (fs::exists(order.from)) move_new(order.from, order.to);
+void put_away(const FileOrder& order, const std::function<void()>& on_block) {
+  if (fs::exists(order.from)) move_new(order.from, order.to, on_block);
   const fs::path settings = settings_beside(order.from);
   if (order.with_settings && is_taken(settings)) {
     const fs::path beside = settings_beside(order.to);
@@ -71,15 +71,13 @@ void put_away(const FileOrder& order) {
   write_file_whole(order.note, order.note_text);
 }
 
-// Each under another name first, so that what is left where this is cut short is no job's folder.
-void remove(const DeleteOrder& order) {
-  for (const fs::path& folder : order.folders) {
-    fs::path gone = folder;
-    gone += ".deleted";
-    fs::remove_all(gone);
-    if (fs::exists(folder)) fs::rename(folder, gone);
-    fs::remove_all(gone);
-  }
+// Under another name first, so that what is left where this is cut short is no job's folder.
+void delete_whole(const fs::path& folder) {
+  fs::path gone = folder;
+  gone += ".deleted";
+  fs::remove_all(gone);
+  if (fs::exists(folder)) fs::rename(folder, gone);
+  fs::remove_all(gone);
 }
 
 std::optional<Failure> failure_of(const std::function<void()>& work) {
@@ -104,8 +102,8 @@ Claimed claim(const ClaimOrder& order) {
   return claimed;
 }
 
-Fetched fetch(const FetchOrder& order) {
-  return {order.job, failure_of([&] { copy_here(order); })};
+Fetched fetch(const FetchOrder& order, const std::function<void()>& on_block) {
+  return {order.job, failure_of([&] { copy_here(order, on_block); })};
 }
 
 Placed place(const PlaceOrder& order) {
@@ -115,11 +113,17 @@ Placed place(const PlaceOrder& order) {
 }
 
 Deleted clear_away(const DeleteOrder& order) {
-  return {order.jobs, failure_of([&] { remove(order); })};
+  Deleted deleted;
+  for (std::size_t i = 0; i < order.jobs.size(); ++i) {
+    const auto failure = failure_of([&] { delete_whole(order.folders.at(i)); });
+    (failure ? deleted.left : deleted.jobs).push_back(order.jobs[i]);
+    if (failure && !deleted.failure) deleted.failure = failure;
+  }
+  return deleted;
 }
 
-Filed file(const FileOrder& order) {
-  return {order.job, failure_of([&] { put_away(order); })};
+Filed file(const FileOrder& order, const std::function<void()>& on_block) {
+  return {order.job, failure_of([&] { put_away(order, on_block); })};
 }
 
 }  // namespace packmerger

@@ -53,7 +53,8 @@ void CrewThreads::start_sender(const PrinterConfig& printer) {
   Queue<SendOrder>& orders = crew_.senders[printer.name];
   Member& sender = senders_[printer.name];
   if (printer.hands_over()) sender.folder = printer.handoff_folder.string();
-  start(sender, [this, &orders, printer] { run_sender(orders, events_, printer); });
+  Pulse& pulse = crew_.handing_over[printer.name];
+  start(sender, [this, &orders, &pulse, printer] { run_sender(orders, events_, printer, pulse); });
 }
 
 void CrewThreads::end_sender(const std::string& printer) {
@@ -61,6 +62,7 @@ void CrewThreads::end_sender(const std::string& printer) {
   senders_.at(printer).thread.join();
   senders_.erase(printer);
   crew_.senders.erase(printer);
+  crew_.handing_over.erase(printer);
 }
 
 void CrewThreads::start_workers(int count) {

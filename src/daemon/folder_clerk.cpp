@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/backoff.h"
 #include "base/files.h"
 #include "base/names.h"
-#include "daemon/backoff.h"
 #include "daemon/clerk.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
@@ -35,11 +35,13 @@ void FolderClerk::run() {
 
 void FolderClerk::carry_out(const ClerkOrder& order) {
   const Pulse::Stroke stroke(desk_.pulse);
+  const auto goes_on = [&] { stroke.renew(); };
   if (const auto* watched = std::get_if<WatchOrder>(&order)) watch(*watched);
   if (const auto* arrived = std::get_if<ClaimOrder>(&order)) events_.push(claim_found(*arrived));
-  if (const auto* distant = std::get_if<FetchOrder>(&order)) events_.push(fetch_found(*distant));
+  if (const auto* distant = std::get_if<FetchOrder>(&order))
+    events_.push(fetch_found(*distant, goes_on));
   if (const auto* ended = std::get_if<PlaceOrder>(&order)) events_.push(place(*ended));
-  if (const auto* placed = std::get_if<FileOrder>(&order)) events_.push(file(*placed));
+  if (const auto* placed = std::get_if<FileOrder>(&order)) events_.push(file(*placed, goes_on));
   if (const auto* old = std::get_if<DeleteOrder>(&order)) events_.push(clear_away(*old));
 }
 
@@ -48,9 +50,8 @@ void FolderClerk::watch(const WatchOrder& order) {
   watch_.reset();
   offered_.clear();
   file_troubles_.clear();
-  trouble_.clear();
-  told_.clear();
-  failures_ = 0;
+  trouble_.reset();
+  told_ = {};
   retry_s_ = 0;
 }
 
@@ -70,8 +71,8 @@ Claimed FolderClerk::claim_found(const ClaimOrder& order) {
   return claimed;
 }
 
-Fetched FolderClerk::fetch_found(const FetchOrder& order) {
-  const Fetched fetched = fetch(order);
+Fetched FolderClerk::fetch_found(const FetchOrder& order, const std::function<void()>& goes_on) {
+  const Fetched fetched = fetch(order, goes_on);
   if (order.keep) return fetched;
   if (fetched.failure)
     refuse(order.from, *fetched.failure);
@@ -83,8 +84,12 @@ Fetched FolderClerk::fetch_found(const FetchOrder& order) {
 void FolderClerk::refuse(const fs::path& file, const Failure& failure) {
   offered_.erase(file);
   if (!watch_) return;
-  watch_->refuse(file, steady_now_s(), order_.retry_s);
-  file_troubles_[file] = sentences(failure);
+  const double pause_s = watch_->refuse(file, steady_now_s(), order_.retry_s);
+  const double now_s = unix_now_s();
+  Trouble& trouble = file_troubles_.try_emplace(file, Trouble{{}, now_s, 0, 0}).first->second;
+  trouble.what = sentences(failure);
+  ++trouble.tries;
+  trouble.next_s = now_s + pause_s;
 }
 
 void FolderClerk::let_go(const fs::path& file) {
@@ -101,15 +106,21 @@ void FolderClerk::look() {
     if (!watch_) watch_ = std::make_unique<WatchFolder>(folder_, order_.rules);
     offer(watch_->look(now));
     std::erase_if(file_troubles_, [](const auto& item) { return !is_taken(item.first); });
-    trouble_.clear();
-    failures_ = 0;
+    trouble_.reset();
   } catch (const Error& error) {
-    trouble_ = sentences({error.fault(), error.what(), error.hint()});
-    retry_s_ = now + backoff_s(order_.retry_s, failures_++);
+    cannot_look(sentences({error.fault(), error.what(), error.hint()}));
   } catch (const std::exception& error) {
-    trouble_ = printable(error.what());
-    retry_s_ = now + backoff_s(order_.retry_s, failures_++);
+    cannot_look(printable(error.what()));
   }
+}
+
+void FolderClerk::cannot_look(const std::string& why) {
+  const double now_s = unix_now_s();
+  if (!trouble_) trouble_ = Trouble{{}, now_s, 0, 0};
+  const double pause_s = backoff_s(order_.retry_s, trouble_->tries++);
+  trouble_->what = why;
+  trouble_->next_s = now_s + pause_s;
+  retry_s_ = steady_now_s() + pause_s;
 }
 
 void FolderClerk::offer(const WatchFolder::Found& found) {
@@ -118,7 +129,7 @@ void FolderClerk::offer(const WatchFolder::Found& found) {
     try {
       leave_note(ignored);
     } catch (const std::exception& error) {
-      file_troubles_[ignored.path] = printable(error.what());
+      file_troubles_[ignored.path] = {printable(error.what()), unix_now_s(), 1, 0};
     }
   }
   for (const fs::path& whole : found.whole) {
@@ -137,15 +148,17 @@ void FolderClerk::leave_note(const WatchFolder::Ignored& ignored) const {
 }
 
 void FolderClerk::tell_trouble() {
-  std::string trouble = trouble_;
-  if (trouble.empty() && !file_troubles_.empty()) {
-    trouble = file_troubles_.begin()->second;
-    if (const std::size_t others = file_troubles_.size() - 1; others > 0)
-      trouble += " (and " + std::to_string(others) + " more)";
+  FolderTold now{order_.printer, trouble_, 0};
+  if (!trouble_ && !file_troubles_.empty()) {
+    const auto first = std::min_element(
+        file_troubles_.begin(), file_troubles_.end(),
+        [](const auto& a, const auto& b) { return a.second.since_s < b.second.since_s; });
+    now.trouble = first->second;
+    now.others = file_troubles_.size() - 1;
   }
-  if (trouble == told_) return;
-  told_ = trouble;
-  events_.push(FolderTold{order_.printer, trouble});
+  if (now.trouble == told_.trouble && now.others == told_.others) return;
+  told_ = now;
+  events_.push(std::move(now));
 }
 
 void FolderClerk::wait() const {

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -34,10 +36,11 @@ class FolderClerk {
   void carry_out(const ClerkOrder& order);
   void watch(const WatchOrder& order);
   Claimed claim_found(const ClaimOrder& order);
-  Fetched fetch_found(const FetchOrder& order);
+  Fetched fetch_found(const FetchOrder& order, const std::function<void()>& goes_on);
   void refuse(const std::filesystem::path& file, const Failure& failure);
   void let_go(const std::filesystem::path& file);
   void look();
+  void cannot_look(const std::string& why);
   void offer(const WatchFolder::Found& found);
   void leave_note(const WatchFolder::Ignored& ignored) const;
   void tell_trouble();
@@ -49,10 +52,9 @@ class FolderClerk {
   WatchOrder order_;  // no printer: nothing is watched
   std::unique_ptr<WatchFolder> watch_;
   std::set<std::filesystem::path> offered_;  // told of, and neither claimed nor refused so far
-  std::string trouble_;                      // of the folder; empty: none
-  std::map<std::filesystem::path, std::string> file_troubles_;
-  std::string told_;  // what was last told of troubles
-  int failures_ = 0;  // of looking, one after the other
+  std::optional<Trouble> trouble_;           // of the folder
+  std::map<std::filesystem::path, Trouble> file_troubles_;
+  FolderTold told_;  // what was told last
   double retry_s_ = 0;
 };
 

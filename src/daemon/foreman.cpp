@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "base/names.h"
-#include "daemon/backoff.h"
 #include "daemon/job_view.h"
 #include "daemon/move_file.h"
 #include "daemon/waits.h"
@@ -13,6 +12,10 @@ namespace packmerger {
 namespace {
 
 constexpr int kMostPrints = 100;  // that a correction is learned from, the newest
+
+std::string tray_text(const JobRecord& job) {
+  return "tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays);
+}
 
 // A folder's name for people: the model's name and the job's number.
 std::string handoff_name(const JobRecord& job) {
@@ -72,7 +75,8 @@ void Foreman::end(JobRecord& job, JobState state, const std::string& reason,
   job.hint = hint;
   job.ended_s = wall_clock_s();
   job.filing_done = job.input.empty();
-  if (const auto known = live_.find(job.id); known != live_.end()) known->second.trouble.clear();
+  forget_tries(job);
+  forget_trouble(job.id);
   store_.save(job, note.empty() ? reason : note, printer);
   say(job, std::string(state_name(state)) + (reason.empty() ? "" : ": " + reason));
 }
@@ -92,6 +96,7 @@ void Foreman::recover(JobRecord& job) {
   const PrinterConfig* printer = config_.printer(job.printer);
   if (printer != nullptr && printer->hands_over()) {
     job.state = JobState::kApproved;  // handing over twice gives the same folder
+    if (is_tried_again(job)) return wait_on(job);
     return store_.save(job, "the daemon was interrupted; handing over again");
   }
   note_told(job);
@@ -108,6 +113,7 @@ void Foreman::drop_order(JobRecord& job) {
   if (job.next_tray > 1) return;  // somebody has to clear the bed for the rest
   if (printer != nullptr && !printer->has_bed()) return;
   job.at_once = false;
+  forget_tries(job);
   job.held = job.held || job.state == JobState::kApproved;
   if (job.state == JobState::kApproved) job.reason = "the order to print it at once is an old one";
   store_.save(job, "the daemon was started again: not printed by an order of before");
@@ -180,10 +186,6 @@ void Foreman::drop_idle_live_jobs() {
   });
 }
 
-double Foreman::retry_at(int failures) const {
-  return now_s_ + backoff_s(config_.retry_s, failures);
-}
-
 void Foreman::step(const JobRecord& job) {
   if (has_ended(job.state)) return file_away(job);
   if (stopping_) return;
@@ -215,8 +217,8 @@ void Foreman::start_sending(const JobRecord& approved) {
   job.hint.clear();
   job.told = job.told_total = 0;
   if (job.sending_s == 0) job.sending_s = wall_clock_s();
-  store_.save(job, "tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays),
-              &record);
+  const bool is_first = job.tries == 0;  // what is tried again was told
+  is_first ? store_.save(job, tray_text(job), &record) : store_.save_untold(job, &record);
   std::error_code untold;  // the sender tells where its file cannot be made
   fs::create_directories(job_path(job.id), untold);
   fs::remove_all(told_file(job), untold);  // of an attempt before, or nobody knows of whom
@@ -226,8 +228,7 @@ void Foreman::start_sending(const JobRecord& approved) {
   crew_.senders.at(job.printer)
       .push({job.id, job.folder, job.next_tray, handoff_name(job), told_file(job), live.control,
              job.tray_files});
-  if (live.trouble.empty())  // otherwise it was told, and is tried again
-    say(job, "sending tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays));
+  if (is_first) say(job, "sending " + tray_text(job));
 }
 
 void Foreman::stop() {

@@ -7,10 +7,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "base/trouble.h"
 #include "daemon/choose_printer.h"
 #include "daemon/cleaner.h"
 #include "daemon/config.h"
@@ -32,6 +34,7 @@ struct Crew {
   std::map<std::filesystem::path, ClerkDesk>
       folders;  // watched ones, those jobs came from, and that of the jobs
   std::map<std::string, Queue<SendOrder>> senders;  // by printer
+  std::map<std::string, Pulse> handing_over;        // by printer: its sender at another disk
 
   explicit Crew(const DaemonConfig& config) {
     for (const PrinterConfig& printer : config.printers) senders[printer.name];
@@ -49,7 +52,10 @@ struct LiveJob {
   bool ended_by_stop = false;  // its print was cancelled by the daemon's end, and by nobody before
   int failures = 0;            // to start this tray, or to file the model
   double retry_s = 0;          // not before, on the clock of advance()
+  double next_s = 0;           // the same as Unix time
   std::string trouble;         // why its file could not be taken or filed so far; empty: nothing
+  double trouble_since_s = 0;  // Unix time
+  std::set<std::string> told;  // why its tray could not be begun, as far as that was told
 };
 
 // Who has a job: one of the workers, or the one for programs.
@@ -108,6 +114,10 @@ class Foreman {
   const JobStore& store() const { return store_; }
   const Cleaner& cleaner() const { return cleaner_; }
   const LiveJob* live(std::int64_t id) const;
+  // What keeps a job from being taken, begun or filed, although it is tried; nothing: nothing does.
+  std::optional<Trouble> trouble_of(const JobRecord& job) const;
+  // Whether a print that could not be begun is being tried again, and has not begun.
+  static bool is_tried_again(const JobRecord& job);
   // The jobs with the workers.
   const std::map<std::int64_t, Preparer>& preparing() const { return preparing_; }
   // Whether an ended job's program is still there to be printed again.
@@ -128,8 +138,12 @@ class Foreman {
   // Whether the printer is there, as far as that is told without disturbing it: of one behind a
   // serial server its last job tells. Nothing: not known, or it is handed its jobs.
   std::optional<bool> connected(const PrinterConfig& printer) const;
-  // Why files in the printer's watched folder cannot be taken now; empty: they can.
-  std::string folder_trouble(const PrinterConfig& printer) const;
+  // Of the printer itself (printer) and its folders (folder, handoff_folder), by these names.
+  Troubles troubles_at(const PrinterConfig& printer) const;
+  // Of neither a job nor a printer, by what has them.
+  Troubles troubles() const;
+  // All that a part of the daemon has now, which is named by `of`.
+  void note_troubles(const std::string& of, Troubles troubles);
 
  private:
   std::filesystem::path job_path(std::int64_t id) const;
@@ -161,8 +175,13 @@ class Foreman {
   void forget(const JobRecord& job);
   void finish_claim(const JobRecord& job);
   void hold_up(const JobRecord& job, const std::string& trouble);
+  void retry_later(LiveJob& live) const;
+  static void forget_tries(JobRecord& job);
+  void wait_on(JobRecord& job, const PrinterRecord* printer = nullptr);
+  void started_after_all(std::int64_t id);
   FileOrder file_order(const JobRecord& job) const;
   void notice_folders();
+  Troubles folder_troubles(const PrinterConfig& printer) const;
 
   void on(const PrepareProgress& event);
   void on(const Hashed& event);
@@ -192,7 +211,6 @@ class Foreman {
   JobRecord prepare_again(const JobRecord& old, const std::string& wanted = {});
   JobRecord with_file(const JobRecord& old) const;
 
-  double retry_at(int failures) const;
   void drop_idle_live_jobs();
   void step(const JobRecord& job);
   void check_takes(const PrinterConfig& printer, const std::string& name) const;
@@ -219,15 +237,16 @@ class Foreman {
   Log log_;
   Cleaner cleaner_;
   std::map<std::int64_t, LiveJob> live_;
-  std::map<std::int64_t, Preparer> preparing_;          // the jobs with the workers
-  std::map<std::string, std::int64_t> sending_;         // the job with each printer's sender
-  std::map<std::string, std::string> folder_troubles_;  // by printer, as their clerks told
-  std::map<std::string, std::string> folder_told_;      // by printer, what was last logged of them
-  std::optional<Devices> devices_;                      // as last told
-  std::map<std::string, bool> reached_;                 // printers behind serial servers, at last
-  std::map<std::string, bool> there_;                   // printers, when they were last looked at
-  bool looked_ = false;                                 // what is connected was told once
-  std::map<std::string, std::string> advised_;          // printers, the port each was advised on
+  std::map<std::int64_t, Preparer> preparing_;         // the jobs with the workers
+  std::map<std::string, std::int64_t> sending_;        // the job with each printer's sender
+  std::map<std::string, FolderTold> folders_told_;     // by printer, as their clerks told
+  std::map<std::string, std::string> folders_logged_;  // by printer and folder, what was last
+  std::map<std::string, Troubles> troubles_;           // by who noted them
+  std::optional<Devices> devices_;                     // as last told
+  std::map<std::string, bool> reached_;                // printers behind serial servers, at last
+  std::map<std::string, bool> there_;                  // printers, when they were last looked at
+  bool looked_ = false;                                // what is connected was told once
+  std::map<std::string, std::string> advised_;         // printers, the port each was advised on
   // By printer and source, learned when first asked for and forgotten when a print ends.
   mutable std::map<std::pair<std::string, std::string>, std::optional<Correction>> corrections_;
   double now_s_ = 0;

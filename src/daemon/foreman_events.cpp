@@ -100,8 +100,7 @@ void Foreman::on(const SendProgress& event) {
   if (found == live_.end() || !found->second.control) return;
   found->second.print = event.report;
   if (event.report.state == PrintState::kConnecting) return;
-  if (has_begun(event.report) && !std::exchange(found->second.trouble, {}).empty())
-    if (const std::optional<JobRecord> job = store_.find(event.job)) say(*job, "started after all");
+  if (has_begun(event.report)) started_after_all(event.job);
   for (const auto& [printer, job] : sending_)
     if (job == event.job) reached_[printer] = true;
 }
@@ -186,20 +185,6 @@ void Foreman::end_untouched(JobRecord job, const SendEnded& event) {
   if (event.outcome == SendOutcome::kFailed)
     return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint, "", &record);
   end(job, JobState::kCancelled, "cancelled before the print began", "", "", &record);
-}
-
-// It is tried again, by the next daemon where this one ends.
-void Foreman::not_started(JobRecord job, const SendEnded& event) {
-  LiveJob& live = live_[job.id];
-  const PrinterRecord record = with_bed_as_before(job, event);
-  job.state = JobState::kApproved;
-  job.reason = live.ended_by_stop ? "the daemon was stopped before the print began"
-                                  : sentence(event.failure);
-  job.hint = event.failure.hint;
-  store_.save(job, job.reason, &record);
-  live.retry_s = retry_at(live.failures++);
-  if (std::exchange(live.trouble, job.reason) != job.reason)
-    say(job, "not started: " + job.reason + ". It is tried again.");
 }
 
 }  // namespace packmerger

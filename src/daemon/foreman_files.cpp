@@ -9,8 +9,6 @@
 namespace packmerger {
 namespace {
 
-constexpr double kNoAnswer_s = 10;  // after which a folder's disk is said to hang
-
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
@@ -99,17 +97,6 @@ void Foreman::settle(JobRecord job) {
   say(job, "received");
 }
 
-// What kept it from its last step does not keep it from the next.
-void Foreman::forget_trouble(std::int64_t id) {
-  const auto found = live_.find(id);
-  if (found == live_.end()) return;
-  LiveJob& live = found->second;
-  live.trouble.clear();
-  live.stage.clear();
-  live.failures = 0;
-  live.retry_s = 0;
-}
-
 void Foreman::forget(const JobRecord& job) {
   std::error_code ignored;
   fs::remove_all(job_path(job.id), ignored);
@@ -143,14 +130,6 @@ bool Foreman::take_upload(const JobRecord& job, const fs::path& file) {
     forget(job);
     return false;
   }
-}
-
-// Told once, and shown with the job until it is mended.
-void Foreman::hold_up(const JobRecord& job, const std::string& trouble) {
-  LiveJob& live = live_[job.id];
-  live.retry_s = retry_at(live.failures++);
-  if (live.trouble != trouble) say(job, trouble);
-  live.trouble = trouble;
 }
 
 // The place is recorded before the file is moved there, so that an interrupted move is finished.
@@ -209,28 +188,6 @@ void Foreman::on(const Filed& event) {
 
 void Foreman::on(const FileIgnored& event) {
   log_(printable(event.file.string()) + ": not taken, " + event.reason);
-}
-
-void Foreman::on(const FolderTold& event) { folder_troubles_[event.printer] = event.trouble; }
-
-std::string Foreman::folder_trouble(const PrinterConfig& printer) const {
-  const auto desk = crew_.folders.find(printer.folder);
-  if (desk != crew_.folders.end() && desk->second.pulse.hangs(kNoAnswer_s))
-    return "its folder does not answer: " + printable(printer.folder.string());
-  const auto told = folder_troubles_.find(printer.name);
-  return told == folder_troubles_.end() ? "" : told->second;
-}
-
-// One line when it begins, and one when it is over.
-void Foreman::notice_folders() {
-  for (const PrinterConfig& printer : config_.printers) {
-    const std::string trouble = folder_trouble(printer);
-    std::string& told = folder_told_[printer.name];
-    if (trouble == told) continue;
-    log_("printer " + printer.name + ": " +
-         (trouble.empty() ? "its folder is usable again" : trouble));
-    told = trouble;
-  }
 }
 
 }  // namespace packmerger

@@ -140,8 +140,9 @@ JobRecord Foreman::cancel(std::int64_t id) {
     throw Error(Fault::kBusy, title(job) + " is just being taken", "Try again in a moment.");
   const LiveJob* running = live(id);
   if (job.state == JobState::kSending) {
-    store_.save(job, "cancelling");
+    // the print first: a disk that is full keeps nobody from ending it
     if (running != nullptr && running->control) running->control->cancel();
+    store_.save(job, "cancelling");
     say(job, "cancelling");
     return job;
   }
@@ -218,6 +219,7 @@ JobRecord Foreman::prepare(std::int64_t id, const std::string& variant) {
   job.state = JobState::kReceived;
   job.wanted = variant;
   forget_what_was_prepared(job);
+  forget_tries(job);
   forget_trouble(id);
   store_.save(job, note);
   say(job, note);

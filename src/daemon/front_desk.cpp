@@ -4,6 +4,7 @@
 #include <future>
 #include <thread>
 
+#include "base/backoff.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "daemon/api.h"
@@ -77,11 +78,23 @@ void FrontDesk::serve(double now_s) {
   if (web_ && web_->config() != config_.web) {
     close();
     retry_s_ = 0;
+    web_stands_.works();
     if (config_.web.port == 0) log_("web server ended");
   }
   if (config_.web.port != 0) open(now_s);
   announce();
+  note_troubles();
   publish(now_s);
+}
+
+void FrontDesk::note_troubles() {
+  Troubles troubles;
+  const bool is_wanted = config_.web.port != 0;
+  if (const auto trouble = web_stands_.trouble(); trouble && is_wanted)
+    troubles["web server"] = *trouble;
+  if (const auto trouble = mdns_ ? mdns_->trouble() : std::nullopt)
+    troubles["announcing printers (mDNS)"] = *trouble;
+  foreman_.note_troubles("front desk", std::move(troubles));
 }
 
 void FrontDesk::open(double now_s) {
@@ -97,10 +110,14 @@ void FrontDesk::open(double now_s) {
          (keys_.empty() ? " (no key yet: packmerger keys add NAME)" : ""));
     tell_who_may_look();
     told_.clear();
+    failures_ = 0;
+    web_stands_.works();
   } catch (const std::exception& error) {
     if (told_ != error.what()) log_(error.what());
     told_ = error.what();
-    retry_s_ = now_s + config_.retry_s;
+    const double pause_s = backoff_s(config_.retry_s, failures_++);
+    retry_s_ = now_s + pause_s;
+    web_stands_.failed(error.what(), pause_s);
   }
 }
 

@@ -42,6 +42,7 @@ class FrontDesk {
   void tell_who_may_look();
   void close();
   void announce();
+  void note_troubles();
   void answer_questions();
   void publish(double now_s);
 
@@ -56,6 +57,8 @@ class FrontDesk {
   Queue<std::string> lines_;  // for the log, from other threads
   std::unique_ptr<Web> web_;
   std::optional<Mdns> mdns_;
+  Standing web_stands_;
+  int failures_ = 0;  // to listen, one after the other
   double retry_s_ = 0;
   double published_s_ = 0;
   std::string told_;

@@ -10,6 +10,7 @@
 #include "daemon/json_values.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
+#include "daemon/trouble_view.h"
 #include "daemon/waits.h"
 #include "job/advice.h"
 #include "model/estimate.h"
@@ -47,6 +48,14 @@ std::string waiting_text(Waits waits) {
   return {};
 }
 
+// Why it could not be begun so far.
+std::string tries_text(const JobRecord& job) {
+  if (job.tries == 0) return job.reason;
+  return job.trouble + (job.tries == 1 ? "" : fmt::format(", tried {} times", job.tries));
+}
+
+std::string in_brackets(const std::string& text) { return text.empty() ? "" : " (" + text + ")"; }
+
 std::string sending_text(const JobRecord& job, const LiveJob* live) {
   if (live == nullptr) return "sending";
   const std::string tray =
@@ -56,7 +65,7 @@ std::string sending_text(const JobRecord& job, const LiveJob* live) {
   if (!live->print.text.empty() && live->print.text != state) text += ", " + live->print.text;
   if (live->print.remaining_s && live->print.done > 0)
     text += ", " + duration_text(*live->print.remaining_s) + " left";
-  return text;
+  return Foreman::is_tried_again(job) ? text + in_brackets(tries_text(job)) : text;
 }
 
 std::string state_text(const Foreman& foreman, const JobRecord& job, const LiveJob* live) {
@@ -70,8 +79,7 @@ std::string state_text(const Foreman& foreman, const JobRecord& job, const LiveJ
       return fmt::format("{} {:.0f} %", live->stage, 100 * live->fraction);
     case JobState::kReady:
     case JobState::kApproved:
-      return waiting_text(waits_for(foreman, job)) +
-             (job.reason.empty() ? "" : " (" + job.reason + ")");
+      return waiting_text(waits_for(foreman, job)) + in_brackets(tries_text(job));
     case JobState::kSending:
       return sending_text(job, live);
     case JobState::kHandedOver:
@@ -85,14 +93,11 @@ std::string state_text(const Foreman& foreman, const JobRecord& job, const LiveJ
   return {};
 }
 
-// One short phrase for people: what the job does or waits for, and what is wrong with its file. Why
-// it was not sent yet is its reason, and is history while it is sent.
+// One short phrase for people: what the job does or waits for, and what is wrong with its file.
 std::string status_text(const Foreman& foreman, const JobRecord& job) {
   const LiveJob* live = foreman.live(job.id);
   const std::string text = state_text(foreman, job, live);
-  const bool is_told = job.state == JobState::kApproved || job.state == JobState::kSending;
-  const bool adds = live != nullptr && !live->trouble.empty() && !is_told;
-  return adds ? text + " (" + live->trouble + ")" : text;
+  return live == nullptr ? text : text + in_brackets(live->trouble);
 }
 
 json heaters_view(const PrintReport& print) {
@@ -211,6 +216,7 @@ json passing_view(const Foreman& foreman, const JobRecord& job) {
                                      unit_of(foreman.config().printer(job.printer)))},
           {"correction",
            correction_view(foreman.correction(job.printer, job.predicted_by), job.predicted_by)},
+          {"trouble", trouble_view(foreman.trouble_of(job))},
           {"folder", job.trays > 0 && !foreman.cleaner().is_gone(job) ? job.folder : ""}};
 }
 
@@ -234,6 +240,7 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
   const PrinterRecord record = foreman.store().printer(printer.name);
   const std::int64_t sending = foreman.sending_at(printer.name);
   const std::optional<bool> connected = foreman.connected(printer);
+  const Troubles troubles = foreman.troubles_at(printer);
   std::string bed = record.bed_clear ? "clear" : "not clear";
   if (!printer.has_bed()) bed = "none";
   return {{"name", printer.name},
@@ -247,7 +254,8 @@ json printer_view(const Foreman& foreman, const PrinterConfig& printer) {
           {"connected", connected ? json(*connected) : json()},
           {"bed", bed},
           {"paused", record.paused},
-          {"trouble", or_null(foreman.folder_trouble(printer))},
+          {"trouble", or_null(words_of(troubles))},
+          {"troubles", list_of(troubles)},
           {"corrections", corrections_view(foreman, printer)},
           {"job", sending == 0 ? json() : json(sending)},
           {"print", print_view(foreman.live(sending), unit_of(&printer))}};
@@ -264,6 +272,8 @@ json storage_view(const Foreman& foreman) {
           {"announced",
            announces ? json{{"from_s", announced->from_s}, {"jobs", announced->jobs}} : json()}};
 }
+
+json troubles_view(const Foreman& foreman) { return list_of(foreman.troubles()); }
 
 json start_view(const JobRecord& job) {
   return {{"job", job.id},
@@ -286,6 +296,7 @@ std::string daemon_status(const Foreman& foreman) {
   for (const PrinterConfig& printer : printers)
     if (const std::int64_t job = foreman.sending_at(printer.name); job != 0)
       text += fmt::format("; job {} is at {}", job, printer.name);
+  for (const auto& [about, trouble] : foreman.troubles()) text += "; trouble with: " + about;
   if (const std::optional<Room>& room = foreman.cleaner().room(); room && room->is_low())
     text += fmt::format("; only {:.1f} GiB free",
                         static_cast<double>(room->free_bytes) / (std::uint64_t{1} << 30));

@@ -19,6 +19,8 @@ nlohmann::json job_view_with_history(const Foreman& foreman, const JobRecord& jo
 nlohmann::json printer_view(const Foreman& foreman, const PrinterConfig& printer);
 // The disk of the state folder, and which jobs' folders are deleted.
 nlohmann::json storage_view(const Foreman& foreman);
+// What fails again and again, but for that of jobs and printers; docs/DAEMON.md names the keys.
+nlohmann::json troubles_view(const Foreman& foreman);
 // A print that an action starts at once; docs/DAEMON.md names the keys.
 nlohmann::json start_view(const JobRecord& job);
 

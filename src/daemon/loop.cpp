@@ -5,6 +5,7 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <deque>
@@ -13,6 +14,7 @@
 #include <map>
 #include <thread>
 
+#include "base/backoff.h"
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/names.h"
@@ -35,7 +37,8 @@ namespace {
 using Log = std::function<void(const std::string&)>;
 
 constexpr int kTick_ms = 1000;
-constexpr double kHandleFor_s = 0.05;  // events in one turn
+constexpr double kHandleFor_s = 0.05;                  // events in one turn
+constexpr std::chrono::milliseconds kFirstPause(200);  // after what failed
 
 // SIGTERM, SIGINT and SIGHUP as something to poll for. Threads started later inherit the mask.
 class Signals {
@@ -91,13 +94,13 @@ class Loop {
     for (int signal = 0; signal == 0 || signal == SIGHUP; signal = signals.next()) {
       if (signal == SIGHUP) reload();
       const double now_s = steady_now_s();
-      failed_ = false;
-      guarded(told_, [&] {
+      collect_events();
+      guarded(jobs_, now_s, [&] {
         take_events(now_s + kHandleFor_s);
         exchange_printers();
         foreman_.advance(now_s);
       });
-      guarded(told_at_doors_, [&] {
+      guarded(doors_, now_s, [&] {
         threads_.start_clerks();
         server_.serve(now_s);
         desk_.serve(now_s);
@@ -109,11 +112,26 @@ class Loop {
     }
   }
 
-  void take_all_events() { take_events(std::numeric_limits<double>::infinity()); }
+  void take_all_events() {
+    collect_events();
+    take_events(std::numeric_limits<double>::infinity());
+  }
 
  private:
-  // What goes wrong is told once, and tried again in the next round.
-  void guarded(std::string& told, const std::function<void()>& work) {
+  // What a round does with the jobs and their database, and with whoever asks.
+  struct Part {
+    const char* about;
+    int most_doublings = 0;  // of the pause after a failure
+    std::string told = {};
+    int failures = 0;
+    double retry_s = 0;
+    Standing standing = {};
+  };
+
+  // What goes wrong is told once, and tried again later: a disk that is full is not asked in each
+  // round.
+  void guarded(Part& part, double now_s, const std::function<void()>& work) {
+    if (now_s < part.retry_s) return;
     std::string trouble;
     try {
       work();
@@ -122,15 +140,29 @@ class Loop {
     } catch (const std::exception& error) {
       trouble = error.what();
     }
-    failed_ = failed_ || !trouble.empty();
-    if (!trouble.empty() && told != trouble) log_(trouble);
-    told = trouble;
+    if (!trouble.empty() && part.told != trouble) log_(trouble);
+    part.told = trouble;
+    if (trouble.empty()) {
+      part.failures = 0;
+      if (part.standing.trouble()) part.standing.works();
+    } else {
+      const double pause_s = backoff_s(std::chrono::duration<double>(kFirstPause).count(),
+                                       part.failures++, part.most_doublings);
+      part.retry_s = steady_now_s() + pause_s;
+      part.standing.failed(printable(trouble), pause_s);
+    }
+    Troubles troubles;
+    if (const auto now = part.standing.trouble()) troubles[part.about] = *now;
+    foreman_.note_troubles(part.about, std::move(troubles));
+  }
+
+  void collect_events() {
+    while (std::optional<Event> event = events_.try_pop()) unhandled_.push_back(std::move(*event));
   }
 
   // An event that could not be recorded stays the first. Thousands may come at once, and each is
   // written to the disk several times: whoever asks something meanwhile gets his turn.
   void take_events(double until_s) {
-    while (std::optional<Event> event = events_.try_pop()) unhandled_.push_back(std::move(*event));
     while (!unhandled_.empty() && steady_now_s() < until_s) {
       foreman_.handle(unhandled_.front());
       unhandled_.pop_front();
@@ -171,8 +203,12 @@ class Loop {
     server_.add_to(waiting);
     desk_.add_to(waiting);
     news_.add_to(waiting);
-    if (failed_) std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    ::poll(waiting.data(), waiting.size(), unhandled_.empty() ? kTick_ms : 0);
+    // whoever stands at a door that fails would wake this at once
+    if (doors_.failures > 0) std::this_thread::sleep_for(kFirstPause);
+    int pause_ms = unhandled_.empty() ? kTick_ms : 0;
+    if (jobs_.failures > 0)
+      pause_ms = std::clamp(static_cast<int>(1000 * (jobs_.retry_s - steady_now_s())), 1, kTick_ms);
+    ::poll(waiting.data(), waiting.size(), pause_ms);
   }
 
   const DaemonConfig& config_;
@@ -188,9 +224,8 @@ class Loop {
   const Log& log_;
   std::map<std::string, fs::path> watched_;  // by printer
   std::deque<Event> unhandled_;
-  bool failed_ = false;  // something, in this round
-  std::string told_;     // what went wrong in the last round, with jobs and at the doors
-  std::string told_at_doors_;
+  Part jobs_{"the jobs' database", 5};
+  Part doors_{"socket and web server"};
 };
 
 std::exception_ptr caught(const std::function<void()>& work, const Log& log) {

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/queue.h"
+#include "base/trouble.h"
 #include "daemon/config.h"
 #include "firmware_io/devices.h"
 #include "firmware_io/print_state.h"
@@ -82,7 +83,7 @@ struct FileOrder {
 // Deletes folders with all that is in them; those that are not there are no failure.
 struct DeleteOrder {
   std::vector<std::int64_t> jobs;
-  std::vector<std::filesystem::path> folders;
+  std::vector<std::filesystem::path> folders;  // of each
 };
 using ClerkOrder =
     std::variant<WatchOrder, ClaimOrder, FetchOrder, PlaceOrder, FileOrder, DeleteOrder>;
@@ -155,7 +156,8 @@ struct FileIgnored {  // what lies in a watched folder is never taken
 };
 struct FolderTold {  // when it changed
   std::string printer;
-  std::string trouble;  // why its folder, or a file in it, cannot be used now; empty: all is well
+  std::optional<Trouble> trouble;  // of its folder, or of a file in it; nothing: all is well
+  std::size_t others = 0;          // further files that have one too
 };
 enum class ClaimOutcome {
   kTaken,
@@ -181,9 +183,10 @@ struct Filed {
   std::int64_t job = 0;
   std::optional<Failure> failure;
 };
-struct Deleted {  // all of an order, or with a failure not all
-  std::vector<std::int64_t> jobs;
-  std::optional<Failure> failure;
+struct Deleted {
+  std::vector<std::int64_t> jobs;  // whose folders are gone
+  std::vector<std::int64_t> left;  // whose are not
+  std::optional<Failure> failure;  // of the first of those
 };
 struct SendProgress {
   std::int64_t job = 0;

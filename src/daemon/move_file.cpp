@@ -40,7 +40,8 @@ void make_folders(const fs::path& folder) {
                 "Give the daemon's user the right to write there.");
 }
 
-void copy_bytes(const fs::path& from, int in, const fs::path& to, int out) {
+void copy_bytes(const fs::path& from, int in, const fs::path& to, int out,
+                const std::function<void()>& on_block) {
   std::vector<char> block(1 << 20);
   for (;;) {
     const ssize_t count = ::read(in, block.data(), block.size());
@@ -56,6 +57,7 @@ void copy_bytes(const fs::path& from, int in, const fs::path& to, int out) {
       if (written < 0 && errno == EINTR) continue;
       if (written < 0) cannot_move(from, to, errno);
       done += written;
+      if (on_block) on_block();
     }
   }
 }
@@ -77,7 +79,8 @@ Moved rename_new(const fs::path& from, const fs::path& to) {
   return Moved::kYes;
 }
 
-void copy_file_whole(const fs::path& from, const fs::path& to) {
+void copy_file_whole(const fs::path& from, const fs::path& to,
+                     const std::function<void()>& on_block) {
   make_folders(to.parent_path());
   const Descriptor in(::open(from.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (in.get() < 0) cannot_move(from, to, errno);
@@ -85,7 +88,7 @@ void copy_file_whole(const fs::path& from, const fs::path& to) {
   const Descriptor out(::mkostemp(name.data(), O_CLOEXEC));
   if (out.get() < 0) cannot_move(from, to, errno);
   try {
-    copy_bytes(from, in.get(), to, out.get());
+    copy_bytes(from, in.get(), to, out.get(), on_block);
     if (::fchmod(out.get(), 0644) != 0 || ::fsync(out.get()) != 0) cannot_move(from, to, errno);
     const int why = rename_keeping(name, to);
     if (why != 0) cannot_move(from, to, why);
@@ -96,9 +99,9 @@ void copy_file_whole(const fs::path& from, const fs::path& to) {
   sync_folder(to.parent_path());
 }
 
-void move_new(const fs::path& from, const fs::path& to) {
+void move_new(const fs::path& from, const fs::path& to, const std::function<void()>& on_block) {
   if (rename_new(from, to) == Moved::kYes) return;
-  copy_file_whole(from, to);
+  copy_file_whole(from, to, on_block);
   if (::unlink(from.c_str()) != 0) cannot_move(from, to, errno);
 }
 

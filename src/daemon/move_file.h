@@ -1,6 +1,7 @@
 // Moving a user's files about without ever losing or replacing one.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -19,11 +20,13 @@ bool is_taken(const fs::path& path);
 Moved rename_new(const fs::path& from, const fs::path& to);
 
 // Copies through a temporary sibling: afterwards `to`, which must not exist, is whole and synced,
-// or absent. Throws as rename_new, and Error{kIo} when from cannot be read.
-void copy_file_whole(const fs::path& from, const fs::path& to);
+// or absent. Throws as rename_new, and Error{kIo} when from cannot be read. on_block: called
+// whenever the disks took another MiB at most.
+void copy_file_whole(const fs::path& from, const fs::path& to,
+                     const std::function<void()>& on_block = {});
 
 // rename_new, or where that is not possible copy_file_whole and then removing from.
-void move_new(const fs::path& from, const fs::path& to);
+void move_new(const fs::path& from, const fs::path& to, const std::function<void()>& on_block = {});
 
 // `folder/name`, or `folder/stem (2).ext` and so on: the first where neither that file nor a note,
 // a picture or a settings file beside it are there.

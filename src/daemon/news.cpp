@@ -1,8 +1,10 @@
 #include "daemon/news.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <array>
 #include <utility>
+
+#include "base/names.h"
 
 #include "daemon/job_view.h"
 #include "daemon/json_values.h"
@@ -13,10 +15,20 @@ namespace {
 using nlohmann::json;
 
 constexpr double kLookEvery_s = 0.5;  // at the printers
+constexpr std::array<const char*, 2> kOfEachTry = {"tries", "next_s"};
+
+// Without what an address may have that only the receiver is to know: user, password, path, query.
+std::string place_of(const std::string& url) {
+  const std::size_t begin = url.find("://") == std::string::npos ? 0 : url.find("://") + 3;
+  const std::size_t end = std::min(url.find_first_of("/?#", begin), url.size());
+  const std::size_t user = url.rfind('@', end);
+  const std::size_t host = user != std::string::npos && user >= begin ? user + 1 : begin;
+  return printable(url.substr(0, begin) + url.substr(host, end - host));
+}
 
 }  // namespace
 
-News::News(const DaemonConfig& config, const Foreman& foreman, JobStore& store, Log log)
+News::News(const DaemonConfig& config, Foreman& foreman, JobStore& store, Log log)
     : config_(config),
       foreman_(foreman),
       store_(store),
@@ -41,6 +53,7 @@ void News::add_to(std::vector<pollfd>& waiting) const {
 void News::serve(double now_s) {
   while (const std::optional<std::string> line = lines_.try_pop()) log_(*line);
   follow_settings();
+  note_troubles();
   if (!has_readers()) return;
   tell_jobs();
   if (now_s - told_s_ < kLookEvery_s) return;
@@ -65,6 +78,22 @@ void News::follow_settings() {
   printers_.clear();  // a broker is told everything
 }
 
+void News::note_troubles() {
+  Troubles troubles;
+  const auto& settings = config_.webhooks;
+  for (const Webhook& webhook : webhooks_) {
+    const std::optional<Trouble> trouble = webhook.trouble();
+    if (!trouble) continue;
+    const auto at = std::find(settings.begin(), settings.end(), webhook.settings());
+    const std::string number =
+        settings.size() == 1 ? "" : std::to_string(at - settings.begin() + 1) + ", ";
+    troubles["webhook " + number + place_of(webhook.settings().url)] = *trouble;
+  }
+  if (const std::optional<Trouble> trouble = mqtt_ ? mqtt_->trouble() : std::nullopt)
+    troubles["MQTT broker " + printable(config_.mqtt.broker)] = *trouble;
+  foreman_.note_troubles("news", std::move(troubles));
+}
+
 void News::tell_jobs() {
   for (const Line& line : std::exchange(jobs_, {}))
     tell({"printers/" + line.job.printer + "/job",
@@ -72,6 +101,12 @@ void News::tell_jobs() {
                      {"at_s", line.at_s},
                      {"note", line.note},
                      {"job", job_view(foreman_, line.job)}})});
+}
+
+// That a print which could not be begun is tried again tells nobody anything new.
+bool News::is_tried_again(const PrinterConfig& printer) const {
+  const auto job = store_.open_jobs().find(foreman_.sending_at(printer.name));
+  return job != store_.open_jobs().end() && Foreman::is_tried_again(job->second);
 }
 
 // How a print gets on is no change of state: pages watch that by /api/v1/events.
@@ -82,10 +117,13 @@ void News::tell_printers() {
     json& print = view["print"];
     view["stage"] = print.is_object() ? print["stage"] : json();
     view.erase("print");
-    std::string state = json_text(view);
-    std::string& told = printers_[printer.name];
-    if (told == state) continue;
-    told = std::move(state);
+    for (json& trouble : view["troubles"])
+      for (const char* key : kOfEachTry) trouble.erase(key);
+    json& told = printers_[printer.name];
+    if (told.is_object() && is_tried_again(printer))
+      for (const char* key : {"job", "bed", "stage"}) view[key] = told[key];
+    if (told == view) continue;
+    told = view;
     tell({"printers/" + printer.name,
           json_text({{"event", "printer"}, {"at_s", wall_clock_s()}, {"printer", view}})});
   }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ class News {
   using Log = std::function<void(const std::string&)>;
 
   // Listens to the store. Everything must outlive it. Does nothing where the settings name nobody.
-  News(const DaemonConfig& config, const Foreman& foreman, JobStore& store, Log log);
+  News(const DaemonConfig& config, Foreman& foreman, JobStore& store, Log log);
   News(const News&) = delete;
   News& operator=(const News&) = delete;
   ~News();  // tells what is left, for some seconds at most
@@ -50,17 +51,19 @@ class News {
   void tell_printers();
   void forget_removed_printers();
   void tell(const Notice& notice);
+  void note_troubles();
+  bool is_tried_again(const PrinterConfig& printer) const;
 
   const DaemonConfig& config_;
-  const Foreman& foreman_;
+  Foreman& foreman_;
   JobStore& store_;
   Log log_;
   Queue<std::string> lines_;  // for the log, from other threads
   DeadLetters dead_;
   std::list<Webhook> webhooks_;
   std::optional<Mqtt> mqtt_;
-  std::vector<Line> jobs_;                       // not told yet
-  std::map<std::string, std::string> printers_;  // as they were told last
+  std::vector<Line> jobs_;                          // not told yet
+  std::map<std::string, nlohmann::json> printers_;  // as they were told last
   double told_s_ = 0;
 };
 

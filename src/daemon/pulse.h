@@ -2,8 +2,10 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
 
 #include "base/clock.h"
+#include "base/wall_clock.h"
 
 namespace packmerger {
 
@@ -12,29 +14,38 @@ class Pulse {
   // While it lives, the thread is at the disk.
   class Stroke {
    public:
-    explicit Stroke(Pulse& pulse) : pulse_(pulse) { pulse_.set(steady_now_s()); }
+    explicit Stroke(Pulse& pulse) : pulse_(pulse) { pulse_.set(true); }
     Stroke(const Stroke&) = delete;
     Stroke& operator=(const Stroke&) = delete;
-    ~Stroke() { pulse_.set(0); }
+    ~Stroke() { pulse_.set(false); }
+
+    // The disk answered, and is asked on: a long copy does not hang.
+    void renew() const { pulse_.set(true); }
 
    private:
     Pulse& pulse_;
   };
 
-  // Whether it has been there for longer than that. Any thread may ask.
-  bool hangs(double for_s) const {
+  // Since when (Unix time) it has waited for the disk, where that is longer than so many seconds.
+  // Any thread may ask.
+  std::optional<double> hangs_since(double for_s) const {
     const std::lock_guard lock(mutex_);
-    return since_s_ > 0 && steady_now_s() - since_s_ > for_s;
+    const bool hangs = is_there_ && steady_now_s() - since_s_ > for_s;
+    return hangs ? std::optional(since_unix_s_) : std::nullopt;
   }
 
  private:
-  void set(double since_s) {
+  void set(bool is_there) {
     const std::lock_guard lock(mutex_);
-    since_s_ = since_s;
+    is_there_ = is_there;
+    since_s_ = steady_now_s();
+    since_unix_s_ = unix_now_s();
   }
 
   mutable std::mutex mutex_;
-  double since_s_ = 0;  // 0: not there
+  bool is_there_ = false;
+  double since_s_ = 0;       // on the steady clock
+  double since_unix_s_ = 0;  // the same moment
 };
 
 }  // namespace packmerger

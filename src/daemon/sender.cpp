@@ -14,7 +14,8 @@ SendOutcome outcome_of(const Error& error, bool begun, const PrintControl& contr
   return later && !begun ? SendOutcome::kNotStarted : SendOutcome::kFailed;
 }
 
-SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig& printer) {
+SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig& printer,
+               Pulse& pulse) {
   bool begun = false;
   PrintClock clock;
   const auto listener = [&](const PrintReport& report) {
@@ -25,8 +26,9 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
   try {
     if (order.control->cancelled()) throw Error(Fault::kInterrupted, "Cancelled", "");
     if (printer.hands_over()) {
-      const fs::path target =
-          hand_over(order.folder, printer.handoff_folder, order.handoff_name, order.tray_files);
+      const Pulse::Stroke stroke(pulse);
+      const fs::path target = hand_over(order.folder, printer.handoff_folder, order.handoff_name,
+                                        order.tray_files, [&] { stroke.renew(); });
       return {order.job, SendOutcome::kDone, {}, "handed over in " + target.string()};
     }
     send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control,
@@ -53,9 +55,10 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
 
 }  // namespace
 
-void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer) {
+void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer,
+                Pulse& pulse) {
   while (const std::optional<SendOrder> order = orders.pop())
-    events.push(send(*order, events, printer));
+    events.push(send(*order, events, printer, pulse));
 }
 
 }  // namespace packmerger

@@ -56,16 +56,22 @@ std::string StateBoard::look() {
   look_at_jobs();
   look_at_printers();
   changed_storage_.update(exchanged(storage_, storage_view(foreman_)));
+  if (json now = troubles_view(foreman_); now != troubles_) {
+    troubles_ = std::move(now);
+    changed_troubles_ = true;
+  }
   json change = json::object();
   if (!changed_jobs_.changed.empty()) change["jobs"] = list_of(changed_jobs_.changed, "id");
   if (!changed_printers_.changed.empty())
     change["printers"] = list_of(changed_printers_.changed, "name");
   if (!changed_storage_.empty()) change["storage"] = changed_storage_;
+  if (changed_troubles_) change["troubles"] = troubles_;
   if (!changed_jobs_.gone.empty()) change["gone"]["jobs"] = changed_jobs_.gone;
   if (!changed_printers_.gone.empty()) change["gone"]["printers"] = changed_printers_.gone;
   changed_jobs_ = {};
   changed_printers_ = {};
   changed_storage_ = json::object();
+  changed_troubles_ = false;
   return change.empty() ? "" : json_text(change);
 }
 
@@ -123,7 +129,8 @@ std::string StateBoard::state() const {
   json printers = json::array();
   for (const auto& [name, view] : printers_) printers.push_back(view);
   return reply_with(R"({"jobs":[)" + jobs + R"(],"printers":)" + json_text(printers) +
-                    R"(,"storage":)" + json_text(storage_) + "}");
+                    R"(,"storage":)" + json_text(storage_) + R"(,"troubles":)" +
+                    json_text(troubles_) + "}");
 }
 
 }  // namespace packmerger

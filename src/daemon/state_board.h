@@ -52,9 +52,11 @@ class StateBoard {
   std::vector<std::int64_t> listed_;  // the jobs in their order
   std::map<std::string, nlohmann::json> printers_;
   nlohmann::json storage_ = nlohmann::json::object();
+  nlohmann::json troubles_ = nlohmann::json::array();
   Changes<std::int64_t> changed_jobs_;  // and not told yet
   Changes<std::string> changed_printers_;
   nlohmann::json changed_storage_ = nlohmann::json::object();
+  bool changed_troubles_ = false;
 };
 
 }  // namespace packmerger

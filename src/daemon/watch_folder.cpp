@@ -11,9 +11,9 @@
 #include <set>
 #include <tuple>
 
+#include "base/backoff.h"
 #include "base/error.h"
 #include "base/names.h"
-#include "daemon/backoff.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/whole_file.h"
@@ -223,11 +223,13 @@ bool WatchFolder::is_ripe(const fs::path& path, const Seen& seen, double now_s) 
   return false;
 }
 
-void WatchFolder::refuse(const fs::path& path, double now_s, double retry_s) {
+double WatchFolder::refuse(const fs::path& path, double now_s, double retry_s) {
   const auto found = seen_.find(path.filename().string());
-  if (found == seen_.end()) return;
+  if (found == seen_.end()) return retry_s;
   Seen& seen = found->second;
-  seen.refused_until_s = now_s + backoff_s(retry_s, seen.refusals++);
+  const double pause_s = backoff_s(retry_s, seen.refusals++);
+  seen.refused_until_s = now_s + pause_s;
+  return pause_s;
 }
 
 }  // namespace packmerger

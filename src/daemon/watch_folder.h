@@ -52,8 +52,8 @@ class WatchFolder {
   bool is_still_whole(const std::filesystem::path& path, double now_s) const;
 
   // The file could not be taken: it is offered again after retry_s, doubled each further time, or
-  // once it changed.
-  void refuse(const std::filesystem::path& path, double now_s, double retry_s);
+  // once it changed. Returns how long that is.
+  double refuse(const std::filesystem::path& path, double now_s, double retry_s);
 
   // When look() has to be called although fd() stays silent.
   double next_look_s() const { return next_look_s_; }

@@ -40,6 +40,7 @@ constexpr std::array kRows = {
     Row{"POST", "printers/{name}/answer", WebTarget::kVerb, Access::kChange, "printers.answer"},
     Row{"POST", "printers/{name}/stop", WebTarget::kVerb, Access::kChange, "printers.stop"},
     Row{"GET", "storage", WebTarget::kVerb, Access::kRead, "storage"},
+    Row{"GET", "troubles", WebTarget::kVerb, Access::kRead, "troubles"},
     Row{"GET", "state", WebTarget::kVerb, Access::kRead, "state"},
     Row{"GET", "uploads", WebTarget::kRules, Access::kRead, ""},
     Row{"POST", "look", WebTarget::kLook, Access::kOpen, ""},

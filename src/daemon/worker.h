@@ -9,13 +9,16 @@
 
 #include "daemon/config.h"
 #include "daemon/messages.h"
+#include "daemon/pulse.h"
 
 namespace packmerger {
 
 // Each runs on the calling thread until its orders are closed and done. Workers may share their
 // orders: each job has a folder of its own, below which alone its child may write.
 void run_worker(Queue<PrepareOrder>& orders, Queue<Event>& events);
-void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer);
+// pulse: while it is at a hand-over folder.
+void run_sender(Queue<SendOrder>& orders, Queue<Event>& events, const PrinterConfig& printer,
+                Pulse& pulse);
 
 // "[ 42%] packing", as packmerger writes it where standard error is no terminal.
 struct ProgressLine {

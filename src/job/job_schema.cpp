@@ -97,10 +97,17 @@ ALTER TABLE job ADD COLUMN turn INTEGER NOT NULL DEFAULT 0;
 PRAGMA user_version = 11;
 )";
 
+constexpr const char* kAddTries = R"(
+ALTER TABLE job ADD COLUMN trouble TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN trouble_since_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN tries INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 12;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 11> kSteps = {
-    kMakeTables, kAddTold,      kAddPrograms, kAddSettings, kAddTimes,
-    kAddChoice,  kAddTrayFiles, kAddApproval, kAddDeleting, kAddWanted, kAddTurn};
+constexpr std::array<const char*, 12> kSteps = {
+    kMakeTables,   kAddTold,     kAddPrograms, kAddSettings, kAddTimes, kAddChoice,
+    kAddTrayFiles, kAddApproval, kAddDeleting, kAddWanted,   kAddTurn,  kAddTries};
 
 }  // namespace
 

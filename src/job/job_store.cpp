@@ -31,7 +31,7 @@ constexpr std::string_view kColumns =
     "told, told_total, variant, at_once, with_settings, predicted_s, "
     "predicted_by, printed_s, paused_s, chosen_by, choice, "
     "profile, seed, tray_files, approved, doubt, deleted_s, "
-    "wanted, turn";
+    "wanted, turn, trouble, trouble_since_s, tries";
 
 // As many as there are columns.
 std::string placeholders() {
@@ -63,7 +63,8 @@ void bind_job(Statement& statement, const JobRecord& job) {
   statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
   statement.bind(job.profile).bind(job.seed).bind(job.tray_files);
   statement.bind(flag(job.approved)).bind(job.doubt).bind(job.deleted_s);
-  statement.bind(job.wanted).bind(job.turn);
+  statement.bind(job.wanted).bind(job.turn).bind(job.trouble).bind(job.trouble_since_s);
+  statement.bind(std::int64_t{job.tries});
 }
 
 JobState read_state(Statement& row) {
@@ -117,6 +118,9 @@ JobRecord read_job(Statement& row) {
   job.deleted_s = row.real();
   job.wanted = row.text();
   job.turn = row.integer();
+  job.trouble = row.text();
+  job.trouble_since_s = row.real();
+  job.tries = static_cast<int>(row.integer());
   return job;
 }
 
@@ -204,6 +208,15 @@ JobRecord JobStore::add(JobRecord job) {
 }
 
 void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRecord* printer) {
+  write(job, true, note, printer);
+}
+
+void JobStore::save_untold(const JobRecord& job, const PrinterRecord* printer) {
+  write(job, false, "", printer);
+}
+
+void JobStore::write(const JobRecord& job, bool may_tell, std::string_view note,
+                     const PrinterRecord* printer) {
   Connection& connection = database_->connection;
   Transaction transaction(connection);
   const std::optional<JobRecord> before = find(job.id);
@@ -214,7 +227,7 @@ void JobStore::save(const JobRecord& job, std::string_view note, const PrinterRe
                                       placeholders() + ") WHERE id = ?");
   bind_job(statement, job);
   statement.bind(job.id).finish();
-  const bool is_told = before->state != job.state || !note.empty();
+  const bool is_told = may_tell && (before->state != job.state || !note.empty());
   if (is_told) write_event(connection, job, note);
   if (printer != nullptr) write_printer(connection, *printer);
   transaction.commit();

@@ -65,13 +65,17 @@ struct JobRecord {
   std::string predicted_by;     // that estimate's source, as job.json has it
   double printed_s = 0;         // by the trays that are printed, pauses left out; 0: not known
   double paused_s = 0;
-  double received_s = 0;      // Unix time
-  double sending_s = 0;       // when the first tray began; 0: not yet
-  double ended_s = 0;         // 0: not yet
-  double deleted_s = 0;       // when its folder was deleted; 0: it was not
-  std::uint64_t edition = 0;  // which one this is of what the store has at hand: every write makes
-                              // another, so that what is made of a record need not be made again.
-                              // 0: read from the database, which does not keep it
+  double received_s = 0;  // Unix time
+  double sending_s = 0;   // when the first tray began; 0: not yet
+  double ended_s = 0;     // 0: not yet
+  double deleted_s = 0;   // when its folder was deleted; 0: it was not
+  std::string trouble;    // why the next tray could not be begun at the last try; empty: it was
+                          // not tried in vain
+  double trouble_since_s = 0;  // Unix time of the first such try
+  int tries = 0;               // in vain since then
+  std::uint64_t edition = 0;   // which one this is of what the store has at hand: every write makes
+                               // another, so that what is made of a record need not be made again.
+                               // 0: read from the database, which does not keep it
 };
 
 // So many of the jobs that have ended are at hand in memory, the one that ended last first.
@@ -106,6 +110,10 @@ class JobStore {
   // With printer, both are written in one step.
   void save(const JobRecord& job, std::string_view note = {},
             const PrinterRecord* printer = nullptr);
+
+  // The same without a line, although the state may have changed: what is tried again and again
+  // is one line of its history.
+  void save_untold(const JobRecord& job, const PrinterRecord* printer = nullptr);
 
   // Called after every line that was written into a history, with the job as it is then. It must
   // not write to the store.
@@ -157,6 +165,8 @@ class JobStore {
 
  private:
   struct Database;
+  void write(const JobRecord& job, bool may_tell, std::string_view note,
+             const PrinterRecord* printer);
   std::unique_ptr<Database> database_;
 };
 

@@ -1,7 +1,7 @@
 // The frame around every view: header, what is wrong with the connection, dialogues, messages.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { mayChange } from './daemon/key';
-import { hasEnded, type Storage } from './daemon/types';
+import { hasEnded, type Storage, type Trouble } from './daemon/types';
 import { HistoryView } from './history/history';
 import { JobPage } from './job/job_page';
 import { askForKey, HowToGetAKey, KeyDialog, KeyForm } from './key_dialog';
@@ -13,7 +13,7 @@ import { isDark, onTheme, switchTheme } from './theme';
 import { AskDialog } from './ui/ask';
 import { Icon, Mark } from './ui/icons';
 import { Notes } from './ui/notes';
-import { jobBadge, storageInWords } from './words';
+import { jobBadge, storageInWords, troubleInWords } from './words';
 
 const LINK_WORDS: Record<Link['kind'], string> = {
   connecting: 'Connecting', live: 'Live', lost: 'No connection', key: 'Key needed',
@@ -56,7 +56,7 @@ function Header({ route, link }: { route: Route; link: Link }) {
   );
 }
 
-function Trouble({ link }: { link: Link }) {
+function Lost({ link }: { link: Link }) {
   if (link.kind !== 'lost') return null;
   return (
     <div class="banner" role="alert">
@@ -71,6 +71,17 @@ function Disk({ storage }: { storage: Storage | null }) {
   const text = storage === null ? '' : storageInWords(storage);
   if (text === '') return null;
   return <div class="banner"><Icon name="warning" /><div>{text}</div></div>;
+}
+
+// Whom the daemon cannot tell, and what else it tries in vain.
+function Failing({ troubles }: { troubles: Trouble[] }) {
+  if (troubles.length === 0) return null;
+  return (
+    <div class="banner">
+      <Icon name="warning" />
+      <div>{troubles.map((trouble) => <p key={trouble.about}>{troubleInWords(trouble)}</p>)}</div>
+    </div>
+  );
 }
 
 function KeyPage({ link }: { link: Extract<Link, { kind: 'key' }> }) {
@@ -120,8 +131,9 @@ export function Shell() {
       }}>To the content</a>
       <Header route={route} link={known.link} />
       <main id="main" tabIndex={-1}>
-        <Trouble link={known.link} />
+        <Lost link={known.link} />
         <Disk storage={known.link.kind === 'key' ? null : known.storage} />
+        <Failing troubles={known.link.kind === 'key' ? [] : known.troubles} />
         <View route={route} known={known} />
       </main>
       <DropTargets printers={known.printers} />

@@ -1,7 +1,7 @@
 // What the page knows, in one place; views draw themselves anew when it changes.
 import { useEffect, useState } from 'preact/hooks';
 import type { Refusal } from './daemon/api';
-import type { Job, Printer, Storage, UploadRules } from './daemon/types';
+import type { Job, Printer, Storage, Trouble, UploadRules } from './daemon/types';
 
 export type Link =
   | { kind: 'connecting' }
@@ -23,6 +23,7 @@ export interface Known {
   jobs: Job[] | null;  // null: not told yet
   printers: Printer[];
   storage: Storage | null;
+  troubles: Trouble[];
   rules: UploadRules | null;
   sending: Sending[];
   asksForKey: string | null;  // why the key is asked for
@@ -48,7 +49,7 @@ export class Store<T extends object> {
 }
 
 export const store = new Store<Known>({
-  link: { kind: 'connecting' }, jobs: null, printers: [], storage: null, rules: null, sending: [], asksForKey: null,
+  link: { kind: 'connecting' }, jobs: null, printers: [], storage: null, troubles: [], rules: null, sending: [], asksForKey: null,
 });
 
 export function useKnown(): Known {

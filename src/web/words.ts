@@ -1,5 +1,5 @@
 // Figures and states as people read them.
-import { hasEnded, type Job, type Printer, type Start, type Storage } from './daemon/types';
+import { hasEnded, type Job, type Printer, type Start, type Storage, type Trouble } from './daemon/types';
 
 const rounded = (value: number, digits: number): string =>
   value.toLocaleString('en', { maximumFractionDigits: digits, minimumFractionDigits: digits });
@@ -49,9 +49,11 @@ export function difference(value: number | null | undefined, against: number | n
   return figure(`${change < 0 ? '−' : '+'}${Math.abs(change)}`, '%');
 }
 
+const clock = (date: Date): string => date.toLocaleTimeString(undefined, { hour: '2-digit', minute: '2-digit' });
+
 export function when(unix_s: number): string {
   const date = new Date(1000 * unix_s);
-  const time = date.toLocaleTimeString(undefined, { hour: '2-digit', minute: '2-digit' });
+  const time = clock(date);
   if (date.toDateString() === new Date().toDateString()) return `today, ${time}`;
   return `${date.toLocaleDateString(undefined, { day: 'numeric', month: 'short', year: 'numeric' })}, ${time}`;
 }
@@ -156,6 +158,13 @@ export function storageInWords({ free_bytes, low, announced, keep_days, keep_job
     low && free_bytes !== null ? `The daemon’s disk has only ${bytes(free_bytes)} left. Make room, or delete the files of jobs that are not needed.` : '',
     announced ? `From ${when(announced.from_s)} on the files of ${count(announced.jobs, 'ended job')} are deleted (keep_days = ${keep_days}, keep_jobs = ${keep_jobs}). Set these to 0 in the settings to keep them all.` : '',
   ].filter(Boolean).join(' ');
+}
+
+// "Nobody answers. Since today, 14:05, tried 7 times, next at 14:21."
+export function troubleInWords({ about, what, since_s, tries, next_s }: Trouble): string {
+  const told = [`since ${when(since_s)}`, tries > 1 ? `tried ${count(tries, 'time')}` : '',
+                next_s === null ? '' : `next at ${clock(new Date(1000 * next_s))}`];
+  return `${sentence(about ? `${about}: ${what}` : what)} ${sentence(told.filter(Boolean).join(', '))}`;
 }
 
 const HEATERS: Record<string, string> = { tool: 'Nozzle', bed: 'Bed', chamber: 'Chamber' };

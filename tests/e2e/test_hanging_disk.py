@@ -144,6 +144,11 @@ class HangsInTheMiddle(Case):
         self.when.write_text("")
         shop.drop("objet", "cube.stl", CUBE)
         shop.wait_for(lambda: self.told.exists() and self.told.stat().st_size > 0)
+        objet = lambda: next(one for one in shop.ask("printers.list") if one["name"] == "objet")
+        shop.wait_for(lambda: any(one["about"] == "handoff_folder" for one in objet()["troubles"]), told=objet)
+        self.assertIn("its hand-over folder does not answer", objet()["trouble"])
+        self.assertLess(abs(time.time() - objet()["troubles"][0]["since_s"]), 120)
+        self.assertEqual(shop.log().count("hand-over folder does not answer"), 1, "one line in the log")
         self.check_that_a_hand_over_keeps_nobody()
 
 

@@ -98,6 +98,23 @@ class Disk(Case):
         self.assertEqual(shop.end(), 0)
         return told.exists()
 
+    def test_a_full_disk_is_one_line_of_the_log_and_seen(self):
+        shop, when, _ = self.shop("full")
+        shop.start()
+        shop.wait_for(lambda: shop.inbox("m0").is_dir())
+        when.write_text(f"1 1000000 {errno.ENOSPC}")
+        (shop.inbox("m0") / "a.gcode").write_text(gcode("a"))
+        tries = lambda: {one["about"]: one["tries"] for one in shop.ask("troubles")}.get("the jobs' database", 0)
+        shop.wait_for(lambda: tries() >= 4)
+        self.assertEqual(shop.log().count("jobs.sqlite"), 1, shop.log())
+        [seen] = [one for one in shop.ask("troubles") if one["about"] == "the jobs' database"]
+        self.assertGreater(seen["next_s"] - seen["since_s"], 1.4, "after 0.2 s, and twice as long each time")
+        when.unlink()
+        shop.wait_until_all_ended(1)
+        shop.check({"a": gcode("a")})
+        self.assertEqual(shop.ask("troubles"), [])
+        self.assertEqual(shop.end(), 0)
+
     def test_calls_that_fail(self):
         struck = 0
         for number in range(DISK_FAULTS):

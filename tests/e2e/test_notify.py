@@ -125,6 +125,24 @@ class Webhook(unittest.TestCase):
             self.assertEqual(self.daemon.ask("GET", "/api/v1/state")[0], 200)
         self.assertLess(time.monotonic() - begun, 5)
 
+    def troubles(self):
+        return json.loads(self.daemon.ask("GET", "/api/v1/troubles")[1])
+
+    def test_a_receiver_that_fails_is_seen_until_it_does_not(self):
+        wait_for(lambda: self.receiver.got, "the printer's state")
+        self.assertEqual(self.troubles(), [])
+        self.receiver.script = [503] * 3
+        job = self.upload()
+        seen = wait_for(self.troubles, "the trouble")[0]
+        self.assertEqual((seen["about"], seen["what"]), (f"webhook http://127.0.0.1:{self.receiver.port}", "HTTP 503"))
+        self.assertGreater(seen["next_s"], seen["since_s"])
+        told = self.daemon.shell("printers", "list").stderr
+        self.assertRegex(told, r"webhook http://127.0.0.1:\d+: HTTP 503 \(since 20\d\d-.*, next ")
+        self.assertNotIn("/hook", told)
+        wait_for(lambda: (job, "preparing") in self.receiver.jobs(), "both messages")
+        wait_for(lambda: not self.troubles(), "the end of the trouble")
+        self.assertEqual(self.daemon.said().count("HTTP 503"), 1)
+
     def test_a_receiver_that_is_away_gets_it_later(self):
         wait_for(lambda: self.receiver.got, "the printer's state")
         port = self.receiver.port
@@ -157,17 +175,18 @@ class Webhook(unittest.TestCase):
 class Broker:
     """mosquitto in a folder of its own, with a user and a password, and what it was told."""
 
-    def __init__(self, folder, port, tls=False):
+    def __init__(self, folder, port, tls=False, more=()):
         self.folder, self.port, self.tls = folder, port, tls
         subprocess.run(["mosquitto_passwd", "-c", "-b", folder / "users", "maker", "pass word"], check=True, capture_output=True)
-        lines = [f"listener {port} 127.0.0.1", "allow_anonymous false", f"password_file {folder / 'users'}", "user root"]
+        lines = [f"listener {port} 127.0.0.1", "allow_anonymous false", f"password_file {folder / 'users'}", "user root", *more]
         if tls:
             lines += [f"certfile {folder / 'cert.pem'}", f"keyfile {folder / 'key.pem'}"]
         (folder / "mosquitto.conf").write_text("\n".join(lines) + "\n")
         self.start()
 
     def start(self):
-        self.process = subprocess.Popen([MOSQUITTO, "-c", self.folder / "mosquitto.conf"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with open(self.folder / "mosquitto.log", "ab") as log:
+            self.process = subprocess.Popen([MOSQUITTO, "-c", self.folder / "mosquitto.conf"], stdout=log, stderr=log)
         wait_for(lambda: is_open(self.port), "the broker")
 
     def retained(self, topic):
@@ -184,7 +203,7 @@ class Broker:
 
 @unittest.skipUnless(MOSQUITTO and shutil.which("mosquitto_passwd") and shutil.which("mosquitto_sub"), "mosquitto and mosquitto-clients are not installed")
 class Mqtt(unittest.TestCase):
-    def begin(self, tls=False, up=True, password="pass word"):
+    def begin(self, tls=False, up=True, password="pass word", more=()):
         port = free_port()
         self.daemon = None
         self.folder = pathlib.Path(program.tempfile.mkdtemp(prefix="packmerger-mqtt-"))
@@ -192,7 +211,7 @@ class Mqtt(unittest.TestCase):
         if tls:
             subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost", "-addext",
                             "subjectAltName=DNS:localhost", "-keyout", self.folder / "key.pem", "-out", self.folder / "cert.pem"], check=True, capture_output=True)
-        self.broker = Broker(self.folder, port, tls)
+        self.broker = Broker(self.folder, port, tls, more)
         self.addCleanup(lambda: self.broker.stop())
         if not up:
             self.broker.stop()
@@ -246,6 +265,15 @@ class Mqtt(unittest.TestCase):
         self.broker.start()
         wait_for(lambda: "shop/packmerger/printers/objet" in self.told(), "the printer")
         self.assertEqual(self.daemon.said().count("cannot be reached"), 1)
+
+    def test_a_broker_that_takes_no_messages_is_tried_ever_less_often(self):
+        self.begin(more=["max_packet_size 200"])  # whoever sends more is dropped
+        troubles = lambda: json.loads(self.daemon.ask("GET", "/api/v1/troubles")[1])
+        wait_for(lambda: [one for one in troubles() if one["tries"] == 2], "two tries")
+        [seen] = troubles()
+        self.assertEqual((seen["about"], seen["what"]), (f"MQTT broker 127.0.0.1:{self.broker.port}", "it does not take its messages"))
+        self.assertGreaterEqual(seen["next_s"] - seen["since_s"], 14, "after 5 s, and after 10 s more")
+        self.assertEqual(self.daemon.said().count("does not take"), 1, self.daemon.said())
 
     def test_tls(self):
         self.begin(tls=True)

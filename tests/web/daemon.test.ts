@@ -21,17 +21,20 @@ test('changes lead from one state to the next, in the daemon’s order', () => {
     jobs: [job(9, null), job(4, null, { progress: { fraction: 0.5 } }), job(7, 50), job(3, 50), job(8, 40)],
     printers: [{ name: 'b', paused: false }, { name: 'd', paused: true }],
     storage: { free_bytes: 5, low: false },
+    troubles: [],
   } as unknown as State;
   const change = {
     jobs: [{ id: 4, progress: null, ended_s: 60 }, job(10, null)],
     printers: [{ name: 'd', paused: false }, { name: 'c', paused: true }],
     storage: { free_bytes: 4 },
+    troubles: [{ about: 'database' }],
     gone: { jobs: [8], printers: ['b'] },
   } as unknown as Change;
   expect(changed(state, change)).toEqual({
     jobs: [job(10, null), job(9, null), job(4, 60), job(7, 50), job(3, 50)],
     printers: [{ name: 'c', paused: true }, { name: 'd', paused: false }],
     storage: { free_bytes: 4, low: false },
+    troubles: [{ about: 'database' }],
   });
   expect(changed(state, {})).toEqual(state);
   expect(changed(state, {}).jobs[0], 'what did not change is the same object').toBe(state.jobs[0]);

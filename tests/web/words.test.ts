@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { afterArrival, bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords } from '../../src/web/words';
+import { afterArrival, bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords, troubleInWords } from '../../src/web/words';
 import { ownEstimate, type Job, type Printer } from '../../src/web/daemon/types';
 
 const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
@@ -55,6 +55,12 @@ test('the question before a print starts names what, where, and for how long', (
   const doubtful = { ...start, tray: 2, trays: 3, time_s: null, doubt: 'packing does not pay' };
   expect(startInWords(doubtful).text).toBe(
     'Tray 2 of 3 of a.stl (job 5) starts now on ender. How long it takes is not known. What speaks against it: packing does not pay.');
+});
+
+test('a trouble tells what, since when, and when it is tried next', () => {
+  const trouble = { about: 'database', what: 'its disk is full', since_s: 0, tries: 1, next_s: null };
+  expect(troubleInWords(trouble)).toMatch(/^Database: its disk is full\. Since .*1970.*\.$/);
+  expect(troubleInWords({ ...trouble, about: undefined, tries: 7, next_s: 90 })).toMatch(/^Its disk is full\. .*, tried 7 times, next at .*\d/);
 });
 
 test('a disk is spoken of only where somebody has to do something', () => {

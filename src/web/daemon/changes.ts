@@ -1,20 +1,22 @@
 // How what the page knows follows the daemon: a state, and then only what changed (docs/API.md).
-import type { Job, Printer, State, Storage } from './types';
+import type { Job, Printer, State, Storage, Trouble } from './types';
 
 // Of jobs and printers the keys that have another value; new ones are whole.
 export interface Change {
   jobs?: (Partial<Job> & Pick<Job, 'id'>)[];
   printers?: (Partial<Printer> & Pick<Printer, 'name'>)[];
   storage?: Partial<Storage>;
+  troubles?: Trouble[];  // all of them
   gone?: { jobs?: number[]; printers?: string[] };
 }
 
-export function changed(state: State, { jobs = [], printers = [], storage, gone = {} }: Change): State {
+export function changed(state: State, { jobs = [], printers = [], storage, troubles = state.troubles, gone = {} }: Change): State {
   return {
     jobs: merged(state.jobs, jobs, gone.jobs, (job) => job.id).sort(inOrder),
     printers: merged(state.printers, printers, gone.printers, (printer) => printer.name)
       .sort((a, b) => (a.name < b.name ? -1 : 1)),
     storage: { ...state.storage, ...storage },
+    troubles,
   };
 }
 

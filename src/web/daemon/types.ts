@@ -13,6 +13,15 @@ export interface Heater {
   target_c: number | null;
 }
 
+// What fails again and again.
+export interface Trouble {
+  about?: string | undefined;  // only in lists
+  what: string;
+  since_s: number;
+  tries: number;
+  next_s: number | null;  // null: nobody knows when it is tried next
+}
+
 export interface Print {
   stage: string;
   fraction: number;
@@ -87,6 +96,7 @@ export interface Job {
   reason: string;
   hint: string;
   told: { done: number; total: number } | null;
+  trouble: Trouble | null;  // why it cannot be taken, begun or filed, although it is tried
   folder: string;
   tray_files: { file: string; sha256: string }[] | null;  // null: not prepared yet, or by an earlier version
   kind: 'model' | 'program';
@@ -116,7 +126,8 @@ export interface Printer {
   connected: boolean | null;
   bed: 'clear' | 'not clear' | 'none';
   paused: boolean;
-  trouble: string | null;  // why files in its folder cannot be taken now
+  trouble: string | null;  // all of troubles, in words
+  troubles: Trouble[];  // of the printer and its folders
   job: number | null;
   print: Print | null;
 }
@@ -134,6 +145,7 @@ export interface State {
   jobs: Job[];
   printers: Printer[];
   storage: Storage;
+  troubles: Trouble[];  // of neither a job nor a printer
 }
 
 // The print that an action starts at once.

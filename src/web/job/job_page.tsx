@@ -14,7 +14,7 @@ import { act } from '../ui/act';
 import { Badge, Bar, Empty } from '../ui/bits';
 import { Icon } from '../ui/icons';
 import { complain } from '../ui/notes';
-import { duration, jobBadge, nextStep, progressText, sentence, when } from '../words';
+import { duration, jobBadge, nextStep, progressText, sentence, troubleInWords, when } from '../words';
 
 // The job as the stream tells it, with the history and the advice that only a question brings.
 function useJob(id: number, known: Known): Job | Refusal | null {
@@ -94,7 +94,8 @@ function Head({ job, report }: { job: Job; report: Report | null }) {
         {job.again_of ? <> · again of <a href={jobHref(job.again_of)}>job {job.again_of}</a></> : null}
       </p>
       {job.progress ? <Progress job={job} /> : null}
-      {job.reason ? <p class="reason"><strong>{sentence(job.reason)}</strong> {job.hint}</p> : null}
+      {job.trouble || job.reason
+        ? <p class="reason"><strong>{job.trouble ? troubleInWords(job.trouble) : sentence(job.reason)}</strong> {job.hint}</p> : null}
       {next ? <p>{next}</p> : null}
       {job.deleted_s ? <p class="quiet-text">Its files were deleted {when(job.deleted_s)}{job.filed ? <>; the model lies at <code>{job.filed}</code></> : null}.</p> : null}
       {job.state === 'handed_over' ? <p>Open it in the printer’s own software.</p> : null}

@@ -4,7 +4,7 @@ import { JobButtons } from '../job/actions';
 import { Preview } from '../job/preview';
 import { jobHref } from '../route';
 import { Badge, Bar } from '../ui/bits';
-import { duration, jobBadge, money, nextStep, progressText, sentence } from '../words';
+import { duration, jobBadge, money, nextStep, progressText, sentence, troubleInWords } from '../words';
 
 export function QueueRow({ job }: { job: Job }) {
   const next = nextStep(job);
@@ -20,7 +20,8 @@ export function QueueRow({ job }: { job: Job }) {
         {job.progress
           ? <><Bar fraction={job.progress.fraction} label={`Job ${job.id}: ${job.progress.stage}`} tone={jobBadge(job).tone} />
               <p class="quiet-text figure">{progressText(job)}</p></>
-          : <p>{[sentence(job.reason), next || sentence(job.status)].filter(Boolean).join(' ')}</p>}
+          : <p>{[job.trouble ? troubleInWords(job.trouble) : sentence(job.reason), next || (job.trouble ? '' : sentence(job.status))]
+              .filter(Boolean).join(' ')}</p>}
         <JobButtons job={job} />
       </div>
     </li>

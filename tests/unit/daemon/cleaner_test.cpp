@@ -168,5 +168,61 @@ TEST_F(Cleaning, GoesOnWhereADaemonDied) {
   EXPECT_GT(shop_.job(old).deleted_s, 0);
 }
 
+TEST_F(Cleaning, AFolderThatStaysKeepsNoOther) {
+  const fs::path folder = shop_.folder_.path() / "old";
+  fs::create_directories(folder);
+  const Deleted deleted = clear_away(DeleteOrder{{1, 2}, {"/proc/self/task", folder}});
+  EXPECT_THAT(deleted.left, testing::ElementsAre(1));
+  EXPECT_THAT(deleted.jobs, testing::ElementsAre(2));
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(Cleaning, WhatCannotBeDeletedIsTriedEverLessOftenToldOnceAndSeen) {
+  const std::int64_t stays = printed(100);
+  const std::int64_t goes = printed(100);
+  int tries = 0;
+  const auto pass = [&](double hours) {
+    for (const double end_s = shop_.now_s_ + 3600 * hours; shop_.now_s_ < end_s;) {
+      shop_.foreman_->advance(shop_.now_s_ += 30);
+      while (const std::optional<ClerkOrder> order = shop_.clerk_order()) {
+        Deleted deleted;
+        for (const std::int64_t job : std::get<DeleteOrder>(*order).jobs)
+          (job == stays ? deleted.left : deleted.jobs).push_back(job);
+        if (!deleted.left.empty()) {
+          ++tries;
+          deleted.failure = {Fault::kCannotWrite, "it is busy", "Wait."};
+        }
+        shop_.tell(deleted);
+      }
+    }
+  };
+  const auto troubles = [&] { return shop_.ask({{"verb", "troubles"}}).at("result"); };
+  EXPECT_EQ(troubles(), json::array());
+  pass(2);
+  EXPECT_GE(tries, 5);
+  EXPECT_LE(tries, 15) << "of 240 looks";
+  EXPECT_GT(shop_.job(goes).deleted_s, 0);
+  EXPECT_EQ(shop_.job(stays).deleted_s, 0);
+  ASSERT_EQ(troubles().size(), 1U);
+  EXPECT_EQ(troubles().at(0).at("about"), "deleting old jobs");
+  EXPECT_EQ(troubles().at(0).at("tries"), tries);
+  const std::size_t first = shop_.log_.find("it is busy");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(shop_.log_.find("it is busy", first + 1), std::string::npos) << shop_.log_;
+  shop_.config_.keep_days = 0;
+  pass(1);
+  EXPECT_EQ(troubles(), json::array()) << "nobody wants it deleted";
+  EXPECT_TRUE(remove(stays).at("ok"));
+  const int before = tries;
+  pass(1);
+  EXPECT_GE(tries, before + 2) << "what somebody deleted is tried again, whatever is kept";
+  shop_.config_.keep_days = 90;
+  shop_.now_s_ += 7200;
+  shop_.foreman_->advance(shop_.now_s_);
+  shop_.run_the_clerk();
+  EXPECT_FALSE(is_there(stays));
+  EXPECT_EQ(troubles(), json::array());
+}
+
 }  // namespace
 }  // namespace packmerger

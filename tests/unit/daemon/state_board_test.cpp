@@ -20,6 +20,7 @@ class Page {
     for (const json& one : change.value("printers", json::array()))
       printers_[one.at("name").get<std::string>()].update(one);
     storage_.update(change.value("storage", json::object()));
+    troubles_ = change.value("troubles", troubles_);
     const json gone = change.value("gone", json::object());
     for (const json& id : gone.value("jobs", json::array())) jobs_.erase(id.get<std::int64_t>());
     for (const json& name : gone.value("printers", json::array()))
@@ -33,7 +34,7 @@ class Page {
               [](const json& a, const json& b) { return turn(a) > turn(b); });
     json printers = json::array();
     for (const auto& [name, one] : printers_) printers.push_back(one);
-    return {{"jobs", jobs}, {"printers", printers}, {"storage", storage_}};
+    return {{"jobs", jobs}, {"printers", printers}, {"storage", storage_}, {"troubles", troubles_}};
   }
 
  private:
@@ -46,6 +47,7 @@ class Page {
   std::map<std::int64_t, json> jobs_;
   std::map<std::string, json> printers_;
   json storage_ = json::object();
+  json troubles_ = json::array();
 };
 
 // One of the many things that happen, to jobs chosen at random.
@@ -54,6 +56,7 @@ void happen(Workshop& shop, int what, std::int64_t job) {
   const auto at_printer = [&](const char* verb) {
     shop.ask({{"verb", verb}, {"name", job % 2 == 0 ? "sim" : "real"}});
   };
+  const Trouble trouble{"its folder is not there", 5, static_cast<int>(job), 9};
   switch (what) {
     case 0:
       shop.drop(job % 2 == 0 ? "sim" : "real", "m.stl");
@@ -98,7 +101,10 @@ void happen(Workshop& shop, int what, std::int64_t job) {
       shop.run_the_clerk();
       break;
     case 11:
-      shop.tell(FolderTold{"real", job % 2 == 0 ? "its folder is not there" : ""});
+      shop.tell(FolderTold{"real", job % 2 == 0 ? std::optional(trouble) : std::nullopt, 1});
+      break;
+    case 13:
+      shop.foreman_->note_troubles("test", job % 2 == 0 ? Troubles{{"all", trouble}} : Troubles{});
       break;
     case 12:
       ask("jobs.delete");
@@ -118,7 +124,7 @@ RC_GTEST_PROP(StateBoard, ChangesLeadToTheWholeState, ()) {
   Page page;
   const auto steps =
       *rc::gen::scale(0.2, rc::gen::container<std::vector<std::pair<int, int>>>(
-                               rc::gen::pair(rc::gen::inRange(0, 14), rc::gen::inRange(1, 12))));
+                               rc::gen::pair(rc::gen::inRange(0, 15), rc::gen::inRange(1, 12))));
   for (const auto& [what, job] : steps) {
     happen(shop, what, job);
     page.take(board.look());

@@ -140,7 +140,8 @@ class HashedJob : public testing::Test {
     Queue<Event> events;
     orders.push(shop_.send_order("real").value());
     orders.close();
-    run_sender(orders, events, *shop_.config_.printer("real"));
+    Pulse pulse;
+    run_sender(orders, events, *shop_.config_.printer("real"), pulse);
     SendOutcome outcome = SendOutcome::kDone;
     while (const std::optional<Event> event = events.try_pop()) {
       if (const auto* ended = std::get_if<SendEnded>(&*event)) outcome = ended->outcome;

@@ -9,7 +9,9 @@ namespace packmerger {
 namespace {
 
 constexpr const char* kDropSinceVersion7 =
-    "ALTER TABLE job DROP COLUMN turn; ALTER TABLE job DROP COLUMN wanted; DROP INDEX job_folder; "
+    "ALTER TABLE job DROP COLUMN trouble; ALTER TABLE job DROP COLUMN trouble_since_s; "
+    "ALTER TABLE job DROP COLUMN tries; ALTER TABLE job DROP COLUMN turn; ALTER TABLE job DROP "
+    "COLUMN wanted; DROP INDEX job_folder; "
     "ALTER TABLE job DROP COLUMN "
     "deleted_s; DROP TABLE memory;"
     "DROP INDEX job_ended; ALTER TABLE job DROP COLUMN approved; ALTER TABLE job DROP COLUMN "
