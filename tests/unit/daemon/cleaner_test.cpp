@@ -118,7 +118,7 @@ TEST_F(Cleaning, TheOldestGoWhereTheDiskGetsFullButNoneOfTheLastDay) {
   const auto order = look(1.4);
   ASSERT_TRUE(order);
   EXPECT_THAT(std::get<DeleteOrder>(*order).jobs, testing::ElementsAre(old));
-  cleaner.on(Deleted{{old}, {}});
+  cleaner.on(Deleted{{old}, {}, {}});
   EXPECT_FALSE(look(1.4)) << "job " << new_one << " ended today";
 }
 
