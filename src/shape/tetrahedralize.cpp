@@ -97,8 +97,9 @@ std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress&
   return read_tetgen_output(to);
 }
 
-// TetGen makes points one that are nearer than 1e-8 of the size. Where bodies were united, points may
-// be nearer, and then what does not cross is refused: it is tried again with all points kept apart.
+// TetGen makes points one that are nearer than 1e-8 of the size. Where bodies were united, points
+// may be nearer, and then what does not cross is refused: it is tried again with all points kept
+// apart.
 std::optional<TetgenOutput> run_keeping_points(TetgenInput input, const Progress& progress) {
   auto output = run_tetgen(input, progress);
   if (output || input.flags.find('T') != input.flags.npos) return output;

@@ -177,7 +177,9 @@ TEST(Tetrahedralize, ASurfaceThatCrossesItselfIsAnOrdinaryOutcome) {
 // A fin over an edge, whose two sides begin nearer to one another than TetGen keeps points apart by
 // itself. Cutting bodies where they cross leaves such things.
 TriangleSoup with_fin(TriangleSoup soup) {
-  const auto [a, b, c] = soup.triangles[0];
+  const int a = soup.triangles[0][0];
+  const int b = soup.triangles[0][1];
+  const int c = soup.triangles[0][2];
   const auto other =
       std::find_if(soup.triangles.begin() + 1, soup.triangles.end(), [&](const auto& triangle) {
         return std::count(triangle.begin(), triangle.end(), a) +
