@@ -41,7 +41,9 @@ class PolygonCutter {
     const Vec3 normal = newell_normal(corners);
     if (corners.size() > 3 && corners.size() <= kMaxEarCorners) {
       std::size_t tried = 0;
-      for (std::size_t i = 0; corners.size() > 3 && tried < corners.size();) {
+      // From the second corner on: what is convex becomes the fan from its first, as in slicers. A
+      // corner that lies off the plane of the others is then where they have it too.
+      for (std::size_t i = 1; corners.size() > 3 && tried < corners.size();) {
         i %= corners.size();
         if (is_ear(corners, i, normal)) {
           emit(corners, i);

@@ -27,8 +27,8 @@ struct ModelFile {
 // UTF-8 or, of either byte order, in UTF-16; a byte order mark is passed over. Compressed files,
 // and some that are no meshes are refused by name.
 //
-// Faces with more than three corners are cut into triangles (ears first, so that they may be
-// concave). Every triangle that is returned has
+// Faces with more than three corners are cut into triangles: fans from the first corner, as in
+// slicers, and ears where they are concave. Every triangle that is returned has
 // indices within points and every coordinate is finite; nothing else is promised: see repair().
 // 3MF: items, components and their transforms are applied, in mm; objects of type "support" and
 // "other" and items that are not to be printed are left out. So are the modifiers, support blockers

@@ -83,8 +83,12 @@ void check_facets(const Shell& shell, double max_volume_mm3) {
                 "Print it with --no-split, or make it thicker.");
 }
 
-// Empty when TetGen refused or died.
-std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress& progress) {
+struct TetgenRun {
+  std::optional<TetgenOutput> output;  // empty when TetGen refused or died
+  bool timed_out = false;
+};
+
+TetgenRun run_tetgen(const TetgenInput& input, const Progress& progress) {
   const TemporaryFolder folder;
   const fs::path from = folder.path() / "surface";
   const fs::path to = folder.path() / "tetrahedra";
@@ -93,18 +97,19 @@ std::optional<TetgenOutput> run_tetgen(const TetgenInput& input, const Progress&
   spec.argv = {helper_program("packmerger-tetgen").string(), from.string(), to.string()};
   spec.max_memory_bytes = kMaxMemoryBytes;
   const ProcessResult result = run_process(spec, kTimeout_s, progress);
-  if (!result.status.ok() || !fs::exists(to)) return std::nullopt;
-  return read_tetgen_output(to);
+  if (!result.status.ok() || !fs::exists(to)) return {std::nullopt, result.timed_out};
+  return {read_tetgen_output(to)};
 }
 
 // TetGen makes points one that are nearer than 1e-8 of the size. Where bodies were united, points
-// may be nearer, and then what does not cross is refused: it is tried again with all points kept
-// apart.
+// may be nearer, and then what does not cross is refused, or TetGen dies: it is tried again with
+// all points kept apart, unless the first time was too long already.
 std::optional<TetgenOutput> run_keeping_points(TetgenInput input, const Progress& progress) {
-  auto output = run_tetgen(input, progress);
-  if (output || input.flags.find('T') != input.flags.npos) return output;
+  TetgenRun run = run_tetgen(input, progress);
+  if (run.output || run.timed_out || input.flags.find('T') != input.flags.npos)
+    return std::move(run.output);
   input.flags += "T1e-13";
-  return run_tetgen(input, progress);
+  return run_tetgen(input, progress).output;
 }
 
 std::array<int, 3> sorted(std::array<int, 3> corners) {

@@ -20,6 +20,7 @@ namespace {
 
 using std::literals::operator""sv;
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using written::PlyCoding;
 
@@ -183,11 +184,21 @@ TEST(ReadModel, NamesWhatIsNoMesh) {
     }
     return "";
   };
-  using testing::HasSubstr;
+  using testing::ElementsAre;
+using testing::HasSubstr;
   EXPECT_THAT(told("\x1F\x8B" + text), HasSubstr("gzip"));
   EXPECT_THAT(told(std::string("\xFF\xFE\0\0s\0\0\0", 8)), HasSubstr("UTF-32"));
   EXPECT_THAT(told("ISO-10303-21;\n"), HasSubstr("STEP"));
   EXPECT_THAT(told(written::zipped({{"cube.stl", text}})), HasSubstr("ZIP archive"));
+}
+
+TEST(ReadModel, ConvexPolygonsAreFansFromTheirFirstCorner) {
+  const TriangleSoup bent = read("v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv 0 1 0\nf 1 2 3 4\n", ".obj").soup;
+  EXPECT_THAT(bent.triangles, ElementsAre(std::array{0, 1, 2}, std::array{0, 2, 3}));
+  const TriangleSoup five =
+      read("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\nf 3 4 5 1 2\n", ".obj").soup;
+  EXPECT_THAT(five.triangles,
+              ElementsAre(std::array{2, 3, 4}, std::array{2, 4, 0}, std::array{2, 0, 1}));
 }
 
 TEST(ReadModel, ConcavePolygonsAreCutWithoutFolding) {
