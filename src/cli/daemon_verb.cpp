@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "base/error.h"
 #include "base/names.h"
 #include "daemon/client.h"
 #include "job/comparison_table.h"
@@ -40,6 +41,15 @@ nlohmann::json ask(const DaemonArguments& arguments, const nlohmann::json& reque
   return ask_daemon(
       arguments.socket.empty() ? default_socket() : std::filesystem::path(arguments.socket),
       request);
+}
+
+nlohmann::json ask_newer(const DaemonArguments& arguments, const std::string& verb) {
+  try {
+    return ask(arguments, {{"verb", verb}});
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kUsage) throw;
+    return nullptr;
+  }
 }
 
 void print_json(const nlohmann::json& value) {
@@ -99,7 +109,8 @@ std::string trouble_text(const nlohmann::json& trouble) {
 }
 
 void tell_troubles(const DaemonArguments& arguments) {
-  for (const nlohmann::json& trouble : ask(arguments, {{"verb", "troubles"}}))
+  if (arguments.json) return;
+  for (const nlohmann::json& trouble : ask_newer(arguments, "troubles"))
     fmt::print(stderr, "{}: {}\n", text_of(trouble, "about"), trouble_text(trouble));
 }
 

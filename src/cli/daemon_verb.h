@@ -23,6 +23,10 @@ CLI::App* add_daemon_verb(CLI::App& verb, const std::string& name, const std::st
 
 nlohmann::json ask(const DaemonArguments& arguments, const nlohmann::json& request);
 
+// For what is only told beside: null where the daemon does not know the verb, because it is of an
+// earlier version and goes on with its print.
+nlohmann::json ask_newer(const DaemonArguments& arguments, const std::string& verb);
+
 // JSON for programs, indented, on standard output.
 void print_json(const nlohmann::json& value);
 
@@ -44,7 +48,8 @@ void tell_start(const nlohmann::json& reply);
 // A trouble as the daemon tells it: "nobody answers (since 2026-03-01 14:05, 7 tries, next 14:21)".
 std::string trouble_text(const nlohmann::json& trouble);
 
-// What else the daemon cannot do now (its database, who is told of changes), on standard error.
+// What else the daemon cannot do now (its database, who is told of changes), on standard error;
+// nothing with --json.
 void tell_troubles(const DaemonArguments& arguments);
 
 // What finished prints taught, as the daemon tells it: "1.12 times as long (1.05 to 1.20, 7

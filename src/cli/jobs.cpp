@@ -38,9 +38,11 @@ void list(const Arguments& arguments) {
 
 double gib(double bytes) { return bytes / (1 << 30); }
 
-// What somebody should know of the disk before it is full.
+// What people should know of the disk before it is full.
 void tell_storage(const Arguments& arguments) {
-  const json storage = ask(arguments.daemon, {{"verb", "storage"}});
+  if (arguments.daemon.json) return;
+  const json storage = ask_newer(arguments.daemon, "storage");
+  if (!storage.is_object()) return;
   if (storage.value("low", false))
     fmt::print(stderr,
                "The disk of the daemon's state folder has only {:.1f} GiB left: make room, or "

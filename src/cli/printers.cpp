@@ -44,14 +44,24 @@ std::string profile_text(const json& printer) {
   return text_of(printer, "profile") + (prefer.empty() ? "" : " (" + prefer + ")");
 }
 
+// Daemons of before tell it in words alone.
+std::string trouble_of(const json& printer) {
+  std::string text;
+  if (const auto troubles = printer.find("troubles"); troubles != printer.end()) {
+    for (const json& trouble : *troubles) text += "; " + trouble_text(trouble);
+  } else if (const std::string told = text_of(printer, "trouble"); !told.empty()) {
+    text = "; " + told;
+  }
+  return text;
+}
+
 std::vector<std::string> row_of(const json& printer) {
   const json job = printer.value("job", json());
   std::string doing = job.is_number() ? fmt::format("job {}", job.get<std::int64_t>()) : "idle";
   const json print = printer.value("print", json());
   if (print.is_object()) doing += ": " + print_text(print);
   if (printer.value("paused", false)) doing += ", paused";
-  for (const json& trouble : printer.value("troubles", json::array()))
-    doing += "; " + trouble_text(trouble);
+  doing += trouble_of(printer);
   const json connected = printer.value("connected", json());
   const std::string port = text_of(printer, "port");
   return {text_of(printer, "name"),

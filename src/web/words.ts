@@ -167,6 +167,12 @@ export function troubleInWords({ about, what, since_s, tries, next_s }: Trouble)
   return `${sentence(about ? `${about}: ${what}` : what)} ${sentence(told.filter(Boolean).join(', '))}`;
 }
 
+// What is wrong with a printer and its folders. Daemons of before tell it in words alone.
+export function troublesOf({ trouble, troubles }: Printer): string[] {
+  if (troubles) return troubles.map((one) => troubleInWords({ ...one, about: undefined }));
+  return trouble ? [sentence(trouble)] : [];
+}
+
 const HEATERS: Record<string, string> = { tool: 'Nozzle', bed: 'Bed', chamber: 'Chamber' };
 export function heaterName(name: string): string {
   const [kind = '', ...rest] = name.split(' ');

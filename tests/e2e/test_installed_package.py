@@ -200,6 +200,9 @@ class Installed(unittest.TestCase):
             self.reaches(3, "sending")
         before, settings = self.service("MainPID"), (self.machine.root / SETTINGS.lstrip("/")).read_text()
         self.assertIn("packmergerd prints", self.apt("install", "/root/new.deb"))
+        for verb, told in (("jobs", "long.gcode"), ("printers", "cable")):  # the new programs ask the daemon of before
+            self.assertIn(told, self.as_alice("packmerger", verb, "list"))
+            self.as_alice("packmerger", verb, "list", "--json")
         self.drop("lab", "meanwhile.stl", stl(torus(10, 4)))  # the daemon of before has it prepared by what is installed now
         self.reaches(4, "ready")
         self.assertEqual(self.service("MainPID"), before)

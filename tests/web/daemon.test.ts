@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest';
 import { refusalOf } from '../../src/web/daemon/api';
-import { changed, follows, type Change } from '../../src/web/daemon/changes';
+import { changed, follows, whole, type Change } from '../../src/web/daemon/changes';
 import { EventReader } from '../../src/web/daemon/sse';
-import type { State } from '../../src/web/daemon/types';
+import type { State, ToldState } from '../../src/web/daemon/types';
 import { forbids } from '../../src/web/daemon/upload_rules';
 import { routeOf } from '../../src/web/route';
 
@@ -38,6 +38,14 @@ test('changes lead from one state to the next, in the daemon’s order', () => {
   });
   expect(changed(state, {})).toEqual(state);
   expect(changed(state, {}).jobs[0], 'what did not change is the same object').toBe(state.jobs[0]);
+});
+
+test('a daemon of before, which prints on, tells less of its state', () => {
+  const told = { jobs: [], printers: [{ name: 'b' }] } as unknown as ToldState;
+  expect(whole(told)).toEqual({ ...told, storage: null, troubles: [] });
+  expect(changed(whole(told), {}), 'and of what changed').toEqual(whole(told));
+  const full = { ...told, storage: { free_bytes: 5 }, troubles: [{ about: 'database' }] } as unknown as State;
+  expect(whole(full)).toEqual(full);
 });
 
 test('a change counts only right after the one before it', () => {

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { afterArrival, bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords, troubleInWords } from '../../src/web/words';
+import { afterArrival, bytes, count, difference, duration, grams, heaterName, jobBadge, money, percent, sentence, startInWords, storageInWords, troublesOf, troubleInWords } from '../../src/web/words';
 import { ownEstimate, type Job, type Printer } from '../../src/web/daemon/types';
 
 const plain = (text: string): string => text.replaceAll('\u00a0', ' ');
@@ -61,6 +61,14 @@ test('a trouble tells what, since when, and when it is tried next', () => {
   const trouble = { about: 'database', what: 'its disk is full', since_s: 0, tries: 1, next_s: null };
   expect(troubleInWords(trouble)).toMatch(/^Database: its disk is full\. Since .*1970.*\.$/);
   expect(troubleInWords({ ...trouble, about: undefined, tries: 7, next_s: 90 })).toMatch(/^Its disk is full\. .*, tried 7 times, next at .*\d/);
+});
+
+test('what is wrong with a printer is told as the daemon tells it, also by one of before', () => {
+  const trouble = { about: 'folder', what: 'its disk hangs', since_s: 0, tries: 0, next_s: null };
+  expect(troublesOf({ trouble: 'its disk hangs', troubles: [trouble] } as Printer)).toEqual([expect.stringMatching(/^Its disk hangs\. Since /)]);
+  expect(troublesOf({ trouble: 'its disk hangs' } as Printer)).toEqual(['Its disk hangs.']);
+  expect(troublesOf({ trouble: null } as Printer)).toEqual([]);
+  expect(troublesOf({} as Printer)).toEqual([]);
 });
 
 test('a disk is spoken of only where somebody has to do something', () => {

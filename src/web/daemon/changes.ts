@@ -1,5 +1,5 @@
 // How what the page knows follows the daemon: a state, and then only what changed (docs/API.md).
-import type { Job, Printer, State, Storage, Trouble } from './types';
+import type { Job, Printer, State, Storage, ToldState, Trouble } from './types';
 
 // Of jobs and printers the keys that have another value; new ones are whole.
 export interface Change {
@@ -10,12 +10,14 @@ export interface Change {
   gone?: { jobs?: number[]; printers?: string[] };
 }
 
+export const whole = (told: ToldState): State => ({ storage: null, troubles: [], ...told });
+
 export function changed(state: State, { jobs = [], printers = [], storage, troubles = state.troubles, gone = {} }: Change): State {
   return {
     jobs: merged(state.jobs, jobs, gone.jobs, (job) => job.id).sort(inOrder),
     printers: merged(state.printers, printers, gone.printers, (printer) => printer.name)
       .sort((a, b) => (a.name < b.name ? -1 : 1)),
-    storage: { ...state.storage, ...storage },
+    storage: storage === undefined ? state.storage : { ...state.storage, ...storage } as Storage,
     troubles,
   };
 }

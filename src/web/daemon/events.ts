@@ -1,10 +1,10 @@
 // Keeps the store up to date: one stream of events, begun again whenever it ends.
 import { noAnswer, Refusal, request } from './api';
-import { changed, follows, type Change } from './changes';
+import { changed, follows, whole, type Change } from './changes';
 import { parsed } from './shown';
 import { EventReader, type ServerEvent } from './sse';
 import { store } from '../store';
-import type { State } from './types';
+import type { State, ToldState } from './types';
 
 const SILENCE_MS = 25_000;  // the daemon says something every ten seconds
 const LONGEST_WAIT_MS = 8_000;
@@ -68,7 +68,7 @@ async function read(control: AbortController): Promise<void> {
 // A change that does not follow what is known is none that can be taken: then all is asked for again.
 function take({ name, id, data }: ServerEvent): void {
   if (name === 'state') {
-    known = parsed<{ result: State }>(data).result;
+    known = whole(parsed<{ result: ToldState }>(data).result);
   } else if (name === 'delta') {
     const before = known;
     const missed = before === null || !follows(id, last);

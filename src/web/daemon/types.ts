@@ -1,4 +1,5 @@
-// What the daemon tells (docs/DAEMON.md, docs/JOB_FOLDER.md). Unix times and durations in seconds.
+// What the daemon tells (docs/DAEMON.md, docs/JOB_FOLDER.md). Unix times and durations in seconds. A daemon of an earlier
+// version that still prints serves this page too, and may not tell what is optional here.
 
 export type JobState =
   | 'claiming' | 'received' | 'preparing' | 'ready' | 'approved' | 'sending'
@@ -81,7 +82,7 @@ export interface Job {
   name: string;
   state: JobState;
   held: boolean;
-  turn: number;
+  turn?: number;
   waits_for: Waits | null;
   status: string;
   progress: (Partial<Print> & { stage: string; fraction: number }) | null;
@@ -90,15 +91,15 @@ export interface Job {
   variant: Variant | 'program' | '';  // what was prepared; '' before, and in old jobs
   pays: boolean;
   advice?: { variant: Variant | null; text: string } | null;  // which way is best; only where one job is asked for
-  doubt: string | null;  // what speaks against printing what was prepared
-  approved: boolean;
+  doubt?: string | null;  // what speaks against printing what was prepared
+  approved?: boolean;
   estimates: Estimates | null;
   reason: string;
   hint: string;
   told: { done: number; total: number } | null;
-  trouble: Trouble | null;  // why it cannot be taken, begun or filed, although it is tried
+  trouble?: Trouble | null;  // why it cannot be taken, begun or filed, although it is tried
   folder: string;
-  tray_files: { file: string; sha256: string }[] | null;  // null: not prepared yet, or by an earlier version
+  tray_files?: { file: string; sha256: string }[] | null;  // null: not prepared yet, or by an earlier version
   kind: 'model' | 'program';
   chosen_by: string | null;
   choice: Choice | null;
@@ -109,7 +110,7 @@ export interface Job {
   received_s: number | null;
   sending_s: number | null;
   ended_s: number | null;
-  deleted_s: number | null;  // its folder
+  deleted_s?: number | null;  // its folder
   filed: string;
   history?: JobEvent[];
 }
@@ -126,8 +127,8 @@ export interface Printer {
   connected: boolean | null;
   bed: 'clear' | 'not clear' | 'none';
   paused: boolean;
-  trouble: string | null;  // all of troubles, in words
-  troubles: Trouble[];  // of the printer and its folders
+  trouble?: string | null;  // all of troubles, in words
+  troubles?: Trouble[];  // of the printer and its folders
   job: number | null;
   print: Print | null;
 }
@@ -144,9 +145,11 @@ export interface Storage {
 export interface State {
   jobs: Job[];
   printers: Printer[];
-  storage: Storage;
+  storage: Storage | null;
   troubles: Trouble[];  // of neither a job nor a printer
 }
+
+export type ToldState = Pick<State, 'jobs' | 'printers'> & Partial<State>;
 
 // The print that an action starts at once.
 export interface Start {

@@ -46,7 +46,7 @@ function askToDelete(job: Job): void {
 
 // The bytes that the printer is given, or was.
 function Hashes({ job }: { job: Job }) {
-  if (job.tray_files === null) return <p class="hashes">SHA-256 of what is sent: not known</p>;
+  if (!job.tray_files) return <p class="hashes">SHA-256 of what is sent: not known</p>;
   return <>{job.tray_files.map(({ file, sha256 }) => <p key={file} class="hashes">{file}: SHA-256 {sha256}</p>)}</>;
 }
 

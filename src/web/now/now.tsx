@@ -10,7 +10,7 @@ import { afterArrival, count, jobBadge } from '../words';
 // Those that wait for a person first, then those at work, then the others in the order they came.
 function inOrder(jobs: Job[]): Job[] {
   const rank = (job: Job): number => ['attention', 'busy'].indexOf(jobBadge(job).tone) + 1 || 3;
-  return jobs.filter((job) => !hasEnded(job)).sort((a, b) => rank(a) - rank(b) || b.turn - a.turn || a.id - b.id);
+  return jobs.filter((job) => !hasEnded(job)).sort((a, b) => rank(a) - rank(b) || (b.turn ?? 0) - (a.turn ?? 0) || a.id - b.id);
 }
 
 export function NowView({ known }: { known: Known }) {

@@ -5,7 +5,7 @@ import { jobHref } from '../route';
 import { act } from '../ui/act';
 import { ask } from '../ui/ask';
 import { Badge, Bar, Button } from '../ui/bits';
-import { degrees, duration, heaterName, printerBadge, troubleInWords } from '../words';
+import { degrees, duration, heaterName, printerBadge, troublesOf } from '../words';
 
 function tell(printer: Printer, verb: PrinterVerb, done: string): void {
   act((starts) => changePrinter(printer.name, verb, starts), done);
@@ -23,7 +23,7 @@ export function PrinterCard({ printer, job }: { printer: Printer; job: Job | und
         <Badge badge={badge} />
       </div>
       {printer.print ? <Printing print={printer.print} job={job} printer={printer} /> : <p class="standing">{standing(printer, job)}</p>}
-      {printer.troubles.map((trouble) => <p key={trouble.about} class="standing">{troubleInWords({ ...trouble, about: undefined })}</p>)}
+      {troublesOf(printer).map((text, index) => <p key={index} class="standing">{text}</p>)}
       {printer.print && printer.print.heaters.length > 0 ? <Heaters heaters={printer.print.heaters} /> : null}
       {printer.print?.stage === 'waiting' ? <Question printer={printer} print={printer.print} /> : null}
       {printer.prefer === null ? <Controls printer={printer} /> : null}
