@@ -161,7 +161,7 @@ void Webhook::run() {
     while (std::optional<Notice> notice = queue_.try_pop())
       waiting.push_back({std::move(notice->body), new_delivery()});
     while (waiting.size() > limits_.most_waiting) give_up("too many messages waited");
-    if (ends && (waiting.empty() || !told.empty() || now_s() > ends_s_)) break;
+    if (ends && (waiting.empty() || failures > 0 || now_s() > ends_s_)) break;
     const double wait_s = waiting.empty() ? 1e6 : next_s - now_s();
     if (wait_s > 0) {
       pollfd news{queue_.fd(), POLLIN, 0};

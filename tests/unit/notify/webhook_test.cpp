@@ -188,6 +188,21 @@ TEST(Webhook, EndsSoonAlthoughNobodyAnswers) {
   EXPECT_THAT(read_file(folder.path() / "dead", 1 << 20), HasSubstr("\"message\":1"));
 }
 
+TEST(Webhook, WhatIsRefusedForGoodKeepsNoOtherWhenItEnds) {
+  const TemporaryFolder folder;
+  DeadLetters dead(folder.path() / "dead");
+  Receiver receiver;
+  receiver.statuses = {400, 400};
+  {
+    Webhook webhook({receiver.url(), ""}, dead, [](const std::string&) {});
+    for (const char* body : {"1", "2", "3", "4"}) webhook.push({"t", body});
+  }
+  EXPECT_THAT(receiver.got(), ElementsAre("1", "2", "3", "4"));
+  const std::string text = read_file(folder.path() / "dead", 1 << 20);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_EQ(text.find("the daemon ended"), std::string::npos);
+}
+
 TEST(Webhook, DeliversWhatWaitsWhenItEnds) {
   const TemporaryFolder folder;
   DeadLetters dead(folder.path() / "dead");
