@@ -17,15 +17,6 @@ using nlohmann::json;
 constexpr double kLookEvery_s = 0.5;  // at the printers
 constexpr std::array<const char*, 2> kOfEachTry = {"tries", "next_s"};
 
-// Without what an address may have that only the receiver is to know: user, password, path, query.
-std::string place_of(const std::string& url) {
-  const std::size_t begin = url.find("://") == std::string::npos ? 0 : url.find("://") + 3;
-  const std::size_t end = std::min(url.find_first_of("/?#", begin), url.size());
-  const std::size_t user = url.rfind('@', end);
-  const std::size_t host = user != std::string::npos && user >= begin ? user + 1 : begin;
-  return printable(url.substr(0, begin) + url.substr(host, end - host));
-}
-
 }  // namespace
 
 News::News(const DaemonConfig& config, Foreman& foreman, JobStore& store, Log log)
@@ -87,7 +78,7 @@ void News::note_troubles() {
     const auto at = std::find(settings.begin(), settings.end(), webhook.settings());
     const std::string number =
         settings.size() == 1 ? "" : std::to_string(at - settings.begin() + 1) + ", ";
-    troubles["webhook " + number + place_of(webhook.settings().url)] = *trouble;
+    troubles["webhook " + number + webhook_place(webhook.settings().url)] = *trouble;
   }
   if (const std::optional<Trouble> trouble = mqtt_ ? mqtt_->trouble() : std::nullopt)
     troubles["MQTT broker " + printable(config_.mqtt.broker)] = *trouble;

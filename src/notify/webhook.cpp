@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/backoff.h"
+#include "base/names.h"
 
 namespace packmerger {
 namespace {
@@ -62,6 +63,14 @@ std::string webhook_signature(const std::string& secret, const std::string& body
   HMAC(EVP_sha256(), secret.data(), static_cast<int>(secret.size()),
        reinterpret_cast<const unsigned char*>(body.data()), body.size(), bytes.data(), &size);
   return "sha256=" + hex(bytes.data(), size);
+}
+
+std::string webhook_place(const std::string& url) {
+  const std::size_t begin = url.find("://") == std::string::npos ? 0 : url.find("://") + 3;
+  const std::size_t end = std::min(url.find_first_of("/?#", begin), url.size());
+  const std::size_t user = url.rfind('@', end);
+  const std::size_t host = user != std::string::npos && user >= begin ? user + 1 : begin;
+  return printable(url.substr(0, begin) + url.substr(host, end - host));
 }
 
 struct Webhook::Letter {
@@ -151,9 +160,12 @@ void Webhook::run() {
   int failures = 0;  // of the receiver, one after the other, whichever message it was
   std::string told;  // the kind of what was told last; empty: it takes messages
   bool told_lost = false;
+  const auto tell = [&, place = webhook_place(settings_.url)](const std::string& what) {
+    tell_("webhook " + place + ": " + what);
+  };
   const auto give_up = [&](const std::string& why) {
     if (!dead_.keep(settings_.url, why, waiting.front().body) && !std::exchange(told_lost, true))
-      tell_("webhook " + settings_.url + ": what cannot be delivered cannot be kept either");
+      tell("what cannot be delivered cannot be kept either");
     waiting.pop_front();
   };
   for (;;) {
@@ -171,14 +183,13 @@ void Webhook::run() {
     Letter& letter = waiting.front();
     const Courier::Outcome outcome = courier.bring(letter, *this);
     if (outcome.why.empty()) {
-      if (!std::exchange(told, {}).empty()) tell_("webhook " + settings_.url + ": answers again");
+      if (!std::exchange(told, {}).empty()) tell("answers again");
       failures = 0;
       standing_.works();
       waiting.pop_front();
       continue;
     }
-    if (std::exchange(told, outcome.kind) != outcome.kind)
-      tell_("webhook " + settings_.url + ": " + outcome.why);
+    if (std::exchange(told, outcome.kind) != outcome.kind) tell(outcome.why);
     if (!outcome.again) failures = 0;  // it is there, and wants others
     const double pause_s =
         outcome.again

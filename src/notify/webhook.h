@@ -56,6 +56,10 @@ class Webhook {
   std::thread thread_;
 };
 
+// An address as it may be shown: without what only the receiver is to know, which is user,
+// password, path and query.
+std::string webhook_place(const std::string& url);
+
 // The value of X-PackMerger-Signature.
 std::string webhook_signature(const std::string& secret, const std::string& body);
 

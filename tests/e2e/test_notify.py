@@ -103,6 +103,7 @@ class Webhook(unittest.TestCase):
         tries = [headers["X-PackMerger-Delivery"] for answer, headers, _ in self.receiver.got[1:5]]
         self.assertEqual(len(set(tries)), 1, "one message, four tries")
         self.assertIn("HTTP 500", self.daemon.said())
+        self.assertNotIn("/hook", self.daemon.said(), "a path may be a secret")
         self.assertFalse(self.undelivered())
 
     def test_what_is_refused_for_good_is_kept(self):

@@ -105,6 +105,32 @@ TEST(Webhook, ATroubleIsToldOnceAndAgainWhenItChangesOrEnds) {
       told, ElementsAre(HasSubstr("HTTP 500"), HasSubstr("HTTP 503"), HasSubstr("answers again")));
 }
 
+TEST(Webhook, OnlyThePlaceOfAnAddressIsShown) {
+  EXPECT_EQ(webhook_place("https://user:pass@host.example:8443/hook/T0KEN?key=1"),
+            "https://host.example:8443");
+  EXPECT_EQ(webhook_place("http://host.example?key=a@b"), "http://host.example");
+  EXPECT_EQ(webhook_place("http://[::1]:80/a@b"), "http://[::1]:80");
+  EXPECT_EQ(webhook_place("http://a\nb/"), "http://a?b");
+
+  const TemporaryFolder folder;
+  DeadLetters dead(folder.path() / "dead");
+  fs::create_directory(folder.path() / "dead");  // so that nothing can be kept there
+  Receiver receiver;
+  receiver.statuses = {500, 400};
+  std::vector<std::string> told;  // by the webhook's thread alone
+  {
+    Webhook webhook(
+        {receiver.url() + "hook/T0KEN?key=K3Y", ""}, dead,
+        [&](const std::string& line) { told.push_back(line); }, kFast);
+    for (const char* body : {"1", "2"}) webhook.push({"t", body});
+    EXPECT_TRUE(wait_for_bodies(receiver, 3));
+  }
+  const std::string place = "webhook http://127.0.0.1:" + std::to_string(receiver.server.port());
+  EXPECT_THAT(told, ElementsAre(place + ": HTTP 500", place + ": HTTP 400",
+                                HasSubstr(place + ": what cannot be delivered"),
+                                place + ": answers again"));
+}
+
 // Pauses of 20, 40, 80, 160 and 320 ms: were they each message's own, three tries of five messages
 // would take 5 · 60 ms.
 TEST(Webhook, ThePausesAreTheReceiversAndNotEachMessages) {
