@@ -78,7 +78,7 @@ class Announcement {
 
   // pause_s: until the next try; 0: avahi-daemon tells when it is there again.
   void tell_absent(const std::string& why, double pause_s = 0) {
-    standing_.failed(why, pause_s);
+    if (was_there_) standing_.failed(why, pause_s);
     if (!std::exchange(is_told_, true))
       tell_("printers are not announced on the network (mDNS): " + why);
   }
@@ -86,6 +86,7 @@ class Announcement {
   static void on_client(AvahiClient* client, AvahiClientState state, void* closure) {
     auto* self = static_cast<Announcement*>(closure);
     self->client_ = client;  // the first call comes before avahi_client_new() returns
+    if (state != AVAHI_CLIENT_CONNECTING && state != AVAHI_CLIENT_FAILURE) self->was_there_ = true;
     switch (state) {
       case AVAHI_CLIENT_S_RUNNING:
         self->announce();
@@ -158,7 +159,8 @@ class Announcement {
                                                                      avahi_simple_poll_free};
   AvahiClient* client_ = nullptr;
   AvahiEntryGroup* group_ = nullptr;
-  int failures_ = 0;  // to reach D-Bus, one after the other
+  int failures_ = 0;        // to reach D-Bus, one after the other
+  bool was_there_ = false;  // avahi-daemon
   bool ends_ = false;
   bool is_lost_ = false;
   bool is_told_ = false;  // that nothing is announced

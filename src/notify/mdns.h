@@ -23,7 +23,8 @@ struct MdnsService {
 };
 
 // Each is announced as _octoprint._tcp while this lives and avahi-daemon runs. Where it does not
-// run that is told once; it is announced again when it is back.
+// run that is told once; it is announced again when it is back. That it stops is a trouble; that it
+// was never there is none, because it need not be installed.
 class Mdns {
  public:
   // retry_s: before D-Bus is tried again where there is none; doubled up to sixteen times.

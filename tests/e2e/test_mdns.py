@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Printers on the network: a real avahi-daemon on a D-Bus of its own, which comes and goes."""
+import json
 import os
 import pathlib
 import shutil
@@ -80,6 +81,9 @@ class Announced(unittest.TestCase):
         self.addCleanup(daemon.close)
         return daemon
 
+    def troubles(self, daemon):
+        return [one["about"] for one in json.loads(daemon.ask("GET", "/api/v1/troubles")[1])]
+
     def test_each_printer_with_its_path_and_no_key(self):
         self.network.start_bus()
         self.network.start_avahi()
@@ -104,12 +108,15 @@ class Announced(unittest.TestCase):
         self.network.start_bus()
         daemon = self.daemon()
         wait_for(lambda: "avahi-daemon does not run" in daemon.said(), "the log")
+        self.assertEqual(self.troubles(daemon), [], "it need not be installed")
         self.network.start_avahi()
         wait_for(lambda: len(self.network.services()) == 2, "both printers")
         self.network.stop("avahi")
         wait_for(lambda: daemon.said().count("not announced") == 2, "the log")
+        wait_for(lambda: self.troubles(daemon) == ["announcing printers (mDNS)"], "the trouble")
         self.network.start_avahi()
         wait_for(lambda: len(self.network.services()) == 2, "both again")
+        wait_for(lambda: not self.troubles(daemon), "the end of the trouble")
         self.assertEqual(daemon.said().count("not announced"), 2, "told once each time")
 
     def test_without_any_bus_it_goes_on(self):
@@ -117,6 +124,7 @@ class Announced(unittest.TestCase):
         wait_for(lambda: "not announced" in daemon.said(), "the log")
         time.sleep(2)
         self.assertEqual(daemon.said().count("not announced"), 1)
+        self.assertEqual(self.troubles(daemon), [])
         self.assertEqual(daemon.ask("GET", "/api/v1/printers")[0], 200)
 
     def test_a_daemon_that_nobody_reaches_is_not_announced(self):
