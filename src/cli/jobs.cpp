@@ -207,7 +207,7 @@ void change(const Arguments& arguments, const std::string& verb) {
   const json job = ask(arguments.daemon, request);
   if (arguments.daemon.json) return print_json(job);
   fmt::print("Job {} ({}): {}\n", job.at("id").get<std::int64_t>(), text_of(job, "name"),
-             verb == "delete" ? "its folder is deleted, what is known of it stays"
+             verb == "delete" ? "its folder is being deleted, what is known of it stays"
                               : text_of(job, "status"));
   tell_start(job);
 }

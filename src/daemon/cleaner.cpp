@@ -134,7 +134,9 @@ void Cleaner::remove(const JobRecord& job) {
   if (!has_ended(job.state))
     throw Error(Fault::kUsage, title(job) + " has not ended", "Cancel it first.");
   if (is_gone(job))
-    throw Error(Fault::kUsage, "The folder of job " + std::to_string(job.id) + " is deleted",
+    throw Error(Fault::kUsage,
+                "The folder of job " + std::to_string(job.id) +
+                    (job.deleted_s > 0 ? " is deleted" : " is being deleted"),
                 "What is known of the job is kept.");
   const std::vector<JobRecord> sharing = store_.sharing(job);
   for (const JobRecord& other : sharing)

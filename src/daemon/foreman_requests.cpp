@@ -229,7 +229,7 @@ JobRecord Foreman::prepare(std::int64_t id, const std::string& variant) {
 JobRecord Foreman::remove(std::int64_t id) {
   const JobRecord job = get(id);
   cleaner_.remove(job);
-  say(job, "its folder is deleted");
+  say(job, "its folder is being deleted");
   return job;
 }
 

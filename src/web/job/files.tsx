@@ -40,7 +40,7 @@ function askToDelete(job: Job): void {
     title: `Delete the files of job ${job.id}?`,
     text: `Trays, programs and pictures of ${job.name} go. What is known of the job stays, and so does the model; printed again, it is prepared anew.`,
     yes: 'Delete the files', no: 'Keep them',
-    act: () => act((starts) => changeJob(job.id, 'delete', starts), `The files of job ${job.id} are deleted`),
+    act: () => act((starts) => changeJob(job.id, 'delete', starts), `The files of job ${job.id} are being deleted`),
   });
 }
 

@@ -144,9 +144,14 @@ TEST_F(Cleaning, ByHandAndThenPreparedAnew) {
   EXPECT_EQ(remove(2).at("error").at("fault"), 2) << "it has not ended";
   EXPECT_EQ(remove(9).at("error").at("fault"), 66);
   EXPECT_TRUE(remove(job).at("ok"));
+  EXPECT_TRUE(is_there(job)) << "the clerk has not come to it";
+  EXPECT_THAT(shop_.log_, testing::HasSubstr("its folder is being deleted"));
+  EXPECT_THAT(std::string(remove(job).at("error").at("what")),
+              testing::EndsWith("is being deleted"));
   shop_.run_the_clerk();
   EXPECT_FALSE(is_there(job));
   EXPECT_EQ(remove(job).at("error").at("fault"), 2) << "it is deleted";
+  EXPECT_THAT(std::string(remove(job).at("error").at("what")), testing::EndsWith(" is deleted"));
   EXPECT_TRUE(shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("ok"));
   shop_.run_the_clerk();
   EXPECT_EQ(shop_.job(3).state, JobState::kReceived) << "from the model below done/";
