@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "job/comparison_key.h"
-#include "job/pack_models.h"
 #include "job/plan_steps.h"
 #include "job/timings.h"
 #include "printers/estimate.h"
@@ -40,17 +39,6 @@ bool same_poses(const Arrangement& a, const Arrangement& b) {
                     [](const JobPart& one, const JobPart& other) {
                       return one.tray == other.tray && one.pose.matrix() == other.pose.matrix();
                     });
-}
-
-void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
-               const PlanOptions& options, const Progress& progress) {
-  try {
-    plan.packed = pack_models(models, profile, options.seed, options.budget_s, progress);
-  } catch (const Error& error) {
-    // What fits no tray is an outcome that a comparison shows; anything else goes on.
-    if (error.fault() != Fault::kBadInput) throw;
-    plan.not_packed = error;
-  }
 }
 
 // Each way is estimated by itself, several at once: a slicer works on one core most of its time.
@@ -108,10 +96,8 @@ void record(Job& job, const std::vector<LoadedModel>& loaded, const DividedModel
     job.tetrahedra += model->tets.count();
     job.clusters += model->clusters;
     job.after_premerge += model->segments.count;
-    if (model->resample_tolerance_mm)
-      job.resample_tolerance_mm =
-          std::max(job.resample_tolerance_mm.value_or(0), *model->resample_tolerance_mm);
   }
+  job.resample_tolerance_mm = resample_tolerance_mm(models);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "base/files.h"
+#include "job/advice.h"
 #include "job/comparison_key.h"
-#include "job/pack_models.h"
 #include "job/plan_steps.h"
 #include "job/timings.h"
 
@@ -34,17 +34,23 @@ void record_known(Job& job, const KnownWays& known) {
   job.resample_tolerance_mm = known.resample_tolerance_mm;
 }
 
-// Makes the one way that is wanted. What is warned of is known.
+// Makes the one way that is wanted, and keeps what is warned of.
 class OneWay {
  public:
   OneWay(const Profile& profile, const PlanOptions& options, const KnownWays& known,
-         const Progress& progress)
-      : profile_(profile), options_(options), known_(known), progress_(progress) {}
+         Warnings& warnings, const Progress& progress)
+      : profile_(profile),
+        options_(options),
+        known_(known),
+        warnings_(warnings),
+        progress_(progress) {}
 
-  void make(Plan& plan, const std::vector<LoadedModel>& loaded, Variant variant) {
+  // False where its surface came out otherwise than when the ways were compared.
+  bool make(Plan& plan, const std::vector<LoadedModel>& loaded, Variant variant) {
     if (variant == Variant::kSolid) plan.solid = solid(loaded);
     if (variant == Variant::kHollow) plan.hollow = hollow(loaded);
     if (variant == Variant::kPacked) pack(plan, loaded);
+    return is_surface_as_known_;
   }
 
  private:
@@ -57,32 +63,54 @@ class OneWay {
   // Only what was re-sampled for its tetrahedra needs them again: elsewhere the shell is that of
   // the surface itself.
   std::optional<Arrangement> hollow(const std::vector<LoadedModel>& loaded) {
-    Warnings known;
     PlanOptions options = options_;
     if (options.hollow && !known_.resample_tolerance_mm) options.split = false;
     const DividedModels models = divide_each(loaded, [&](const Mesh& surface) {
       if (!options.split) return keep_whole(surface);
-      return undivided(surface, profile_, options.hollow, known, progress_);
+      return undivided(surface, profile_, options.hollow, warnings_, progress_);
     });
-    return stand_best(shells_of(models, profile_, options, known, progress_), profile_, progress_);
+    if (!is_surface_as_known(models)) return std::nullopt;
+    return stand_best(shells_of(models, profile_, options, warnings_, progress_), profile_,
+                      progress_);
   }
 
   void pack(Plan& plan, const std::vector<LoadedModel>& loaded) {
-    Warnings known;
-    const DividedModels models = divide_all(loaded, profile_, options_, known, progress_);
+    const DividedModels models = divide_all(loaded, profile_, options_, warnings_, progress_);
+    if (!is_surface_as_known(models)) return;
     for (const auto& model : models) plan.job.shell_volume_mm3 += model->shell.volume_mm3;
     if (!known_.compared.packed_apart)
-      plan.packed = pack_models(models, profile_, options_.seed, options_.budget_s, progress_);
+      pack_into(plan, models, profile_, options_, progress_);
     else
       plan.packed =
           whole_pieces(models, options_) == WholePieces::kSolid ? solid(loaded) : hollow(loaded);
   }
 
+  bool is_surface_as_known(const DividedModels& models) {
+    return is_surface_as_known_ = resample_tolerance_mm(models) == known_.resample_tolerance_mm;
+  }
+
   const Profile& profile_;
   const PlanOptions& options_;
   const KnownWays& known_;
+  Warnings& warnings_;
   const Progress& progress_;
+  bool is_surface_as_known_ = true;
 };
+
+bool warns_of_anything_else(const Warnings& warnings, const Warnings& known) {
+  return std::any_of(warnings.begin(), warnings.end(), [&](const Warning& warning) {
+    return std::none_of(known.begin(), known.end(), [&](const Warning& other) {
+      return other.code == warning.code && other.text == warning.text;
+    });
+  });
+}
+
+// Whether what was made is what the figures are of.
+bool fits_estimate(const std::optional<Arrangement>& way, const std::optional<Estimate>& estimate) {
+  if (!way || !estimate) return !way && !estimate;
+  return way->trays == estimate->trays &&
+         way->parts.size() == static_cast<std::size_t>(estimate->parts);
+}
 
 }  // namespace
 
@@ -102,8 +130,14 @@ std::optional<Plan> plan_known(const Profile& profile, const PlanOptions& option
   });
   record_inputs(plan.job, loaded);
   record_known(plan.job, known);
-  timed(times, "arrange",
-        [&] { OneWay(profile, options, known, progress).make(plan, loaded, variant); });
+  OneWay way(profile, options, known, warnings, progress);
+  const bool is_as_known = timed(times, "arrange", [&] { return way.make(plan, loaded, variant); });
+  const std::optional<Arrangement>& made = variant == Variant::kSolid    ? plan.solid
+                                           : variant == Variant::kHollow ? plan.hollow
+                                                                         : plan.packed;
+  if (!is_as_known || warns_of_anything_else(warnings, known.compared.warnings) ||
+      !fits_estimate(made, estimate_of(known.estimates, variant)))
+    return std::nullopt;
   return plan;
 }
 

@@ -10,9 +10,10 @@
 namespace packmerger {
 
 // What plan() would make of it, times aside, but only with the way that `variant` asks for. Empty
-// where `known` compared anything else (comparison_sha256), or where a clock ended its packing and
-// that is to be done again. Throws what plan() throws, and Error{kBadInput} as it does in its
-// not_packed where the parts fit no tray.
+// where `known` compared anything else (comparison_sha256), where a clock ended its packing and
+// that is to be done again, or where it comes out otherwise this time, so that the figures and
+// warnings are not its own: TetGen may have met the end of its time or its memory now, or then.
+// Throws what plan() throws.
 std::optional<Plan> plan_known(const Profile& profile, const PlanOptions& options,
                                const KnownWays& known, Variant variant, const Progress& progress);
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "job/choose_division.h"
+#include "job/pack_models.h"
 #include "shape/hollow.h"
 
 namespace packmerger {
@@ -56,6 +57,24 @@ WholePieces whole_pieces(const DividedModels& models, const PlanOptions& options
                                  [](const auto& model) { return model->tets.count() == 0; });
   if (!whole) return WholePieces::kNone;
   return options.split ? WholePieces::kHollow : WholePieces::kSolid;
+}
+
+std::optional<double> resample_tolerance_mm(const DividedModels& models) {
+  std::optional<double> most;
+  for (const auto& model : models)
+    if (const std::optional<double> tolerance = model->resample_tolerance_mm)
+      most = std::max(most.value_or(0), *tolerance);
+  return most;
+}
+
+void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
+               const PlanOptions& options, const Progress& progress) {
+  try {
+    plan.packed = pack_models(models, profile, options.seed, options.budget_s, progress);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kBadInput) throw;
+    plan.not_packed = error;
+  }
 }
 
 void record_inputs(Job& job, const std::vector<LoadedModel>& loaded) {

@@ -36,6 +36,13 @@ WholeModels shells_of(const DividedModels& models, const Profile& profile,
 enum class WholePieces { kNone, kHollow, kSolid };
 WholePieces whole_pieces(const DividedModels& models, const PlanOptions& options);
 
+// What each surface was allowed to move where any was re-sampled; empty where none was.
+std::optional<double> resample_tolerance_mm(const DividedModels& models);
+
+// Packs them. What fits no tray is an outcome that a comparison shows: plan.not_packed.
+void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
+               const PlanOptions& options, const Progress& progress);
+
 // Writes the inputs down, and their surfaces.
 void record_inputs(Job& job, const std::vector<LoadedModel>& loaded);
 

@@ -6,8 +6,6 @@
 #include <functional>
 #include <set>
 
-#include "job/plan_known.h"
-
 namespace packmerger {
 namespace {
 
@@ -37,22 +35,6 @@ TEST(ComparisonKey, ChangesWithWhateverTheFiguresDependOn) {
   }
   EXPECT_EQ(keys.size(), changes.size());
   EXPECT_TRUE(keys.contains(comparison_sha256(Profile{}, PlanOptions{}, models)));
-}
-
-TEST(KnownPlan, IsNoneOfAnythingElse) {
-  PlanOptions options;
-  KnownWays known;
-  known.compared.sha256 = comparison_sha256(Profile{}, options, {});
-  options.seed = 2;
-  EXPECT_FALSE(plan_known(Profile{}, options, known, Variant::kSolid, Progress()));
-}
-
-TEST(KnownPlan, APackingThatAClockEndsIsMadeAgain) {
-  PlanOptions options;
-  options.budget_s = 1;
-  KnownWays known;
-  known.compared.sha256 = comparison_sha256(Profile{}, options, {});
-  EXPECT_FALSE(plan_known(Profile{}, options, known, Variant::kPacked, Progress()));
 }
 
 }  // namespace
