@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "job/plan.h"
+#include "model/job.h"
 #include "model/printer.h"
 
 namespace packmerger {
 
-// The SHA-256 of all that the figures of a comparison depend on: the models' bytes, how large and
-// in which way they are treated, the whole profile, the slicer and this program's version. Neither
-// the wanted way nor the machine. model_sha256: one per options.models, in order.
+// The SHA-256 of all that the figures of a comparison and its warnings depend on: the models' names
+// and bytes, how large and in which way they are treated, the whole profile, and the bytes of the
+// slicer and of this very build of the program and its helper. Neither the wanted way nor the
+// machine. Of the inputs, file and sha256 count.
 std::string comparison_sha256(const Profile& profile, const PlanOptions& options,
-                              const std::vector<std::string>& model_sha256);
+                              const std::vector<JobInput>& inputs);
 
 }  // namespace packmerger

@@ -83,12 +83,6 @@ void drop_repeated(Warnings& warnings) {
   warnings = std::move(once);
 }
 
-std::string key_of(const Job& job, const PlanOptions& options) {
-  std::vector<std::string> hashes;
-  for (const JobInput& input : job.inputs) hashes.push_back(input.sha256);
-  return comparison_sha256(job.profile, options, hashes);
-}
-
 void record(Job& job, const std::vector<LoadedModel>& loaded, const DividedModels& models) {
   record_inputs(job, loaded);
   for (const auto& model : models) {
@@ -132,7 +126,7 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   });
 
   drop_repeated(warnings);
-  plan.job.compared.sha256 = key_of(plan.job, options);
+  plan.job.compared.sha256 = comparison_sha256(profile, options, plan.job.inputs);
   plan.job.compared.warnings = warnings;
   return plan;
 }

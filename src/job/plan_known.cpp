@@ -12,16 +12,16 @@
 namespace packmerger {
 namespace {
 
-// Before anything is computed, by the bytes of the files alone.
+// Before anything is computed, by the files alone.
 bool is_of(const KnownWays& known, const Profile& profile, const PlanOptions& options) {
   std::map<fs::path, std::string> done;
-  std::vector<std::string> hashes;
+  std::vector<JobInput> inputs;
   for (const fs::path& model : options.models) {
     std::string& sha256 = done[model];
     if (sha256.empty()) sha256 = sha256_hex_of_file(model);
-    hashes.push_back(sha256);
+    inputs.push_back({model.filename().string(), sha256});
   }
-  return known.compared.sha256 == comparison_sha256(profile, options, hashes);
+  return known.compared.sha256 == comparison_sha256(profile, options, inputs);
 }
 
 void record_known(Job& job, const KnownWays& known) {

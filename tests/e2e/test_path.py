@@ -2,13 +2,16 @@
 """The whole path with the real programs: a file dropped in a watched folder ends as a recorded print; `send`
 without the daemon; the variants; and tray.3mf in somebody else's program."""
 import json
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
@@ -48,6 +51,9 @@ class Path(unittest.TestCase):
     def prepare(self, *arguments, out="job"):
         result = program.run("prepare", self.ball, "--out", self.folder / out, *FAST, *arguments)
         self.assertEqual(result.code, 0, str(result))
+        return self.told(out)
+
+    def told(self, out):
         return json.loads((self.folder / out / "job.json").read_text())
 
     def test_from_a_watched_folder_to_a_recorded_print(self):
@@ -125,6 +131,25 @@ set = ["tabu_patience=1", "tabu_samples=2"]
                                  "--compared", self.folder / known, out=f"{variant}-again")
             self.assertIn("arrange", again["timings_s"], "it was compared once more")
             self.assertEqual(self.content(variant), self.content(f"{variant}-again"), variant)
+
+    def test_another_build_compares_anew(self):
+        here = self.folder / "bin"
+        here.mkdir()
+        for name in ("packmerger", "packmerger-tetgen"):
+            shutil.copy(program.binary(name), here)
+        profile = ("--profile", program.SOURCE / "profiles" / "objet30.toml", "--no-split", "--variant", "solid")
+        with unittest.mock.patch.dict(os.environ, PACKMERGER_BIN=str(here)):
+            self.prepare(*profile, out="first")
+            self.prepare(*profile, "--compared", self.folder / "first", out="same")
+            with open(here / "packmerger-tetgen", "ab") as helper:
+                helper.write(b"another build")
+            self.prepare(*profile, "--compared", self.folder / "same", out="helped")
+            with open(here / "packmerger", "ab") as own:
+                own.write(b"another build")
+            self.prepare(*profile, "--compared", self.folder / "helped", out="own")
+        stages = {out: [stage for stage in ("arrange", "estimate") if stage in self.told(out)["timings_s"]]
+                  for out in ("same", "helped", "own")}
+        self.assertEqual(stages, {"same": ["arrange"], "helped": ["estimate"], "own": ["estimate"]})
 
     def content(self, out):
         """The bytes of a job folder's files, times left out."""
