@@ -44,13 +44,14 @@ std::size_t GcodeStream::answered_by(const GcodeReply& ok) const {
 
 void GcodeStream::handle_ok(const GcodeReply& reply) {
   temperatures_in_ok_ = temperatures_in_ok_ || reply.has_temperature;
+  const bool owed = tally_.count_ok(reply.has_temperature);
   const std::size_t answered = answered_by(reply);
   if (answered == unanswered_.size()) {
     // One too many opens nothing. A request may have been stale, for instance the answer to a
     // doubled line: the line itself was taken.
     if (unanswered_.empty() && resend_)
       resend_.reset();
-    else
+    else if (!owed || !was_silent_)
       doubted_until_ = last_ + kDoubtedLines, in_doubt_ = true;
     return;
   }
@@ -143,9 +144,10 @@ void GcodeStream::watch_silence() {
 // printer that is alive meanwhile reads nothing yet, so it is asked ever more seldom. One that
 // counts no lines may answer the empty line too, in the place of the one that got lost.
 void GcodeStream::recover() {
-  in_doubt_ = true;
+  was_silent_ = true;
   if (attempt_at_s_ > given_at_s_ && alive_at_s_ >= attempt_at_s_) patience_factor_ *= 2;
   channel_.send("");
+  tally_.count_sent(false);
   ask_for_proof();
   attempt_at_s_ = channel_.now_s();
 }
@@ -153,8 +155,7 @@ void GcodeStream::recover() {
 // The answer to M105 comes behind all others: what was owed before it and did not come got lost,
 // and an ok that comes before it, though nothing else is owed, is one too many.
 void GcodeStream::ask_for_proof() {
-  send_raw("M105");
-  unanswered_.back().asks_temperatures = true;
+  send_raw("M105", true);
   m105_behind_ = true;
   asked_behind_ = last_;
 }

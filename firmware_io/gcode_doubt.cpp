@@ -11,21 +11,38 @@ constexpr std::size_t kFarAhead = 1000;
 constexpr int kTries = 3;
 // A line that loses more is bad, and flips bits too, which nobody could see here.
 constexpr int kMostMissed = 5;
+constexpr int kMostRepeated = 3;
+// For the answers to what was asked while a slow command was executed; they come at once behind it.
+constexpr double kOwed_s = 2;
 
 }  // namespace
 
 bool GcodeStream::is_in_doubt() const {
-  return in_doubt_ && line_count_ != LineCount::kKept && !cancelling_ && !resend_ && last_ > 0;
+  return (in_doubt_ || was_silent_) && line_count_ != LineCount::kKept && !cancelling_ &&
+         !resend_ && last_ > 0;
 }
 
 // Returns the line to give again, where it got lost.
 std::optional<std::size_t> GcodeStream::settle_doubt() {
-  const bool answered = !taken_for_granted_ && attempt_at_s_ <= given_at_s_;
+  if (was_silent_) hear_what_is_owed();
+  if (resend_) return hear_answers();
+  const bool answered = tally_.proves_line(temperatures_in_ok_);
+  if (answered && !in_doubt_ && tally_.is_complete(temperatures_in_ok_)) {
+    was_silent_ = taken_for_granted_ = false;
+    return std::nullopt;
+  }
   std::optional<std::size_t> again = learn_line_count();
   if (!again && line_count_ == LineCount::kIgnored && !cancelling_)
     again = prove_by_position(answered);
-  in_doubt_ = false;
+  in_doubt_ = was_silent_ = false;
   return again;
+}
+
+// A printer that was only slow has yet to answer whatever it was asked meanwhile.
+void GcodeStream::hear_what_is_owed() {
+  const double end_s = channel_.now_s() + kOwed_s;
+  while (!resend_ && !tally_.is_complete(temperatures_in_ok_) && channel_.now_s() < end_s)
+    if (const auto reply = channel_.receive(kSettle_s)) handle(*reply);
 }
 
 // M105 under a wrong number: a printer that counts asks for the line that it lacks, or for the next
@@ -37,8 +54,7 @@ std::optional<std::size_t> GcodeStream::learn_line_count() {
     line.pop_back();
     probes_ = true;
     probed_at_s_ = channel_.now_s();
-    send_raw(line);
-    unanswered_.back().asks_temperatures = true;
+    send_raw(line, true);
     const auto again = hear_answers();
     probes_ = false;
     if (again) return again;
@@ -70,7 +86,9 @@ std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
     place_.learn(*told_);
     return std::nullopt;
   }
-  if (fate == GcodeFate::kUnknown || ++missed_ > kMostMissed) fail_in_doubt(answered);
+  if (fate == GcodeFate::kUnknown || (fate == GcodeFate::kMissed && ++missed_ > kMostMissed) ||
+      (fate == GcodeFate::kRepeatable && ++repeated_ > kMostRepeated))
+    fail_in_doubt(answered);
   return last_;
 }
 

@@ -149,7 +149,7 @@ GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered)
   }
   if (!agree(told, where_known(line.after, line.before))) return GcodeFate::kUnknown;
   if (answered) return GcodeFate::kTaken;
-  return line.repeatable ? GcodeFate::kMissed : GcodeFate::kUnknown;
+  return line.repeatable ? GcodeFate::kRepeatable : GcodeFate::kUnknown;
 }
 
 }  // namespace packmerger

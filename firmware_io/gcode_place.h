@@ -46,12 +46,13 @@ class GcodePlace {
 
 enum class GcodeFate {
   kTaken,
-  kMissed,  // or it may be given again, whatever became of it
+  kMissed,      // as the place proves
+  kRepeatable,  // nobody knows, but it may be given again
   kUnknown
 };
 
-// Of a line, by what the printer says behind it. answered: an ok came, which may have been another
-// line's.
+// Of a line, by what the printer says behind it. answered: as many oks came as were owed, one of
+// which may have been doubled.
 GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered);
 
 }  // namespace packmerger

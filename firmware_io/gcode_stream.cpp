@@ -136,9 +136,10 @@ bool GcodeStream::may_give_another() const {
 void GcodeStream::give(std::size_t number) {
   std::string line = numbered_gcode(number, command(number));
   unanswered_.push_back({number, line.size(), gcode_word(command(number)) == "M105"});
+  tally_.begin(unanswered_.back().asks_temperatures);
   line.pop_back();
   channel_.send(line);
-  if (number > highest_) trace_ = place_.follow(command(number));
+  if (number > highest_) trace_ = place_.follow(command(number)), repeated_ = 0;
   last_ = number;
   highest_ = std::max(highest_, number);
   alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
@@ -200,9 +201,10 @@ void GcodeStream::hear_position(const GcodeReply& reply) {
   if (asks_position_) told_ = read_gcode_point(reply.text);
 }
 
-void GcodeStream::send_raw(std::string_view line) {
+void GcodeStream::send_raw(std::string_view line, bool asks_temperatures) {
   channel_.send(line);
-  unanswered_.push_back({0, line.size() + 1, false});
+  tally_.count_sent(asks_temperatures);
+  unanswered_.push_back({0, line.size() + 1, asks_temperatures});
 }
 
 void GcodeStream::show_state() {

@@ -12,6 +12,7 @@
 #include "firmware_io/gcode_channel.h"
 #include "firmware_io/gcode_place.h"
 #include "firmware_io/gcode_script.h"
+#include "firmware_io/gcode_tally.h"
 #include "firmware_io/heat_watch.h"
 #include "firmware_io/print_state.h"
 
@@ -79,7 +80,7 @@ class GcodeStream {
   void silence_positions(std::size_t number);
   void handle(const GcodeReply& reply);
   void hear_position(const GcodeReply& reply);
-  void send_raw(std::string_view line);
+  void send_raw(std::string_view line, bool asks_temperatures = false);
   void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
 
@@ -98,6 +99,7 @@ class GcodeStream {
   // gcode_doubt.cpp: printers that count no lines
   bool is_in_doubt() const;
   std::optional<std::size_t> settle_doubt();
+  void hear_what_is_owed();
   std::optional<std::size_t> learn_line_count();
   void heed_probe(const GcodeReply& ok);
   std::optional<std::size_t> prove_by_position(bool answered);
@@ -170,7 +172,9 @@ class GcodeStream {
   double patience_factor_ = 1;
   double busy_at_s_ = 0;
   HeatWatch heat_;
+  GcodeTally tally_;
   bool in_doubt_ = false;       // what became of the line, if the printer counts none
+  bool was_silent_ = false;     // so that it was asked for a sign of life behind the line
   bool probes_ = false;         // it is being asked whether it counts lines,
   double probed_at_s_ = 0;      // since then
   bool asks_position_ = false;  // M114 was sent to find out
@@ -194,6 +198,7 @@ class GcodeStream {
   GcodePlace place_;
   GcodeTrace trace_;  // of the line given last
   int missed_ = 0;    // lines that got lost on their way to a printer that counts none
+  int repeated_ = 0;  // how often the line given last was given again to be sure
 };
 
 // The commands of a text of the profile.

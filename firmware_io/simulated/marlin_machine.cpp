@@ -1,6 +1,7 @@
 // The simulated Marlin's machine: its commands, moves and heaters.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,7 @@ namespace packmerger::simulated {
 namespace {
 
 constexpr double kHoming_s = 5;
+constexpr double kMacro_s = 8;
 
 // The value of a parameter: of 'X' in "G1 X10 Y2", 10.
 std::optional<double> value(const std::string& command, char letter) {
@@ -64,6 +66,13 @@ void Marlin::execute(const std::string& command, double now_s) {
   if (is(command, "M112")) kill("kill() called!");
   if (is(command, "M410")) planned_ends_s_.clear();
   execute_report(command, now_s);
+  const char letter = command[0];
+  if (letter == 'G' || letter == 'M' || letter == 'T') return;
+  const bool is_word = command.size() > 1 && std::isalpha(static_cast<unsigned char>(command[1]));
+  if (traits_.macros && is_word)
+    block(Blocked::kUntil, now_s, now_s + pace_.machine_s(kMacro_s));
+  else
+    say_unknown(command);
 }
 
 // Everything that moves or waits for moves. False for another command.
@@ -139,8 +148,6 @@ void Marlin::execute_report(const std::string& command, double now_s) {
     say(std::string("Cap:PROMPT_SUPPORT:") + (traits_.prompts ? "1" : "0"));
     say(std::string("Cap:EMERGENCY_PARSER:") + (traits_.emergency_parser ? "1" : "0"));
   }
-  const char letter = command[0];
-  if (letter != 'G' && letter != 'M' && letter != 'T') say_unknown(command);
 }
 
 void Marlin::say_unknown(const std::string& command) {

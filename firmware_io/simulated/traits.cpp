@@ -30,6 +30,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"heats_quietly", &T::heats_quietly},
                                  {"doubled_ok", &T::doubled_ok},
                                  {"counts_lines", &T::counts_lines},
+                                 {"macros", &T::macros},
                                  {"comment_blank", &T::comment_blank}};
   return names;
 }
@@ -74,6 +75,14 @@ MarlinTraits marlin_1_1() {
   traits.emergency_parser = false;
   traits.prompts = false;
   traits.filament_change = false;
+  return traits;
+}
+
+MarlinTraits klipper() {
+  MarlinTraits traits;
+  traits.counts_lines = traits.busy = traits.autoreport = traits.prompts = false;
+  traits.emergency_parser = traits.filament_change = traits.crlf = false;
+  traits.comment_blank = traits.heats_quietly = traits.macros = true;
   return traits;
 }
 

@@ -31,10 +31,12 @@ struct MarlinTraits {
   bool doubled_ok = false;         // every fifth ok comes twice
   bool counts_lines = true;        // else it looks at neither number nor checksum, nor asks for a
                                    // line, and says ok to an empty one, as Klipper does
+  bool macros = false;             // a command that begins with a word takes eight seconds
   bool comment_blank = false;      // "// action:", "// Unknown command:", as Klipper writes them
 };
 
 MarlinTraits marlin_1_1();
+MarlinTraits klipper();
 
 // As given here: Sailfish 7.8.
 struct ReplicatorTraits {

@@ -275,6 +275,15 @@ TEST(MarlinTraps, LooksAtNoNumberAndAnswersAnEmptyLine) {
   EXPECT_EQ(wire.says(line(7, "M82") + line(7, "M82") + "N1 M83*99\n\n"), "ok\nok\nok\nok\n");
 }
 
+TEST(MarlinTraps, AMacroTakesItsTime) {
+  Marlin marlin(kRealTime, with("macros"));
+  Wire wire(marlin);
+  EXPECT_EQ(wire.says("PRINT_START BED=60\n", 7),
+            "echo:busy: processing\necho:busy: processing\necho:busy: processing\n");
+  EXPECT_THAT(wire.says("", 2), HasSubstr("ok\n"));
+  EXPECT_THAT(wire.says("W1\n"), HasSubstr("Unknown command"));
+}
+
 TEST(MarlinTraps, WhatIsBeyond95BytesIsDroppedAndTheLineAskedForAgain) {
   Marlin marlin(kRealTime);
   Wire wire(marlin);

@@ -4,23 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "firmware_io/gcode_place.h"
+#include "firmware_io/gcode_tally.h"
 #include "firmware_io/simulated/marlin.h"
 #include "sim/scenario.h"
 
 namespace packmerger::test {
 namespace {
 
+using simulated::klipper;
 using simulated::Marlin;
-using simulated::MarlinTraits;
 using simulated::Pace;
 using ::testing::HasSubstr;
-
-MarlinTraits uncounted() {
-  MarlinTraits traits;
-  traits.counts_lines = false;
-  traits.comment_blank = true;
-  return traits;
-}
 
 // Moves that each lead elsewhere, with filament as `mode` (M82 or M83) has it.
 std::vector<std::string> moves(const std::string& mode, int count) {
@@ -47,8 +41,9 @@ struct Outcome {
 using Harm = std::function<void(const std::string& command, std::string& bytes)>;
 
 Outcome outcome(const std::vector<std::string>& program, const Harm& harm,
-                const std::string& lost_answer = "", std::size_t window_bytes = 0) {
-  Marlin firmware(Pace{1, true}, uncounted());
+                const std::string& lost_answer = "", std::size_t window_bytes = 0,
+                Pace pace = {1, true}) {
+  Marlin firmware(pace, klipper());
   FaultyPort port(firmware);
   port.on_send = [&](std::string& bytes) {
     const std::size_t begin = bytes.find(' ') + 1;
@@ -62,6 +57,40 @@ Outcome outcome(const std::vector<std::string>& program, const Harm& harm,
   options.window_bytes = window_bytes;
   const auto failure = print(port, true, text(program), control, {}, options);
   return {failure, only(port.executed(), program), port.sent};
+}
+
+// With moves that take three seconds each, the first ones where nobody knows where the head is.
+std::vector<std::string> slow_program() {
+  std::vector<std::string> program = {"M140 S50", "PRINT_START BED=50", "M83"};
+  for (int i = 0; i < 20; ++i) program.push_back("G1 E3." + std::to_string(10 + i) + " F60");
+  for (const char* line : {"G28", "G4 S40", "G4 P60000", "M190 S90", "END_PRINT"})
+    program.emplace_back(line);
+  return program;
+}
+
+TEST(Uncounted, ASlowCommandIsNoLostOne) {
+  const std::vector<std::string> program = slow_program();
+  for (const std::size_t window : {0U, 96U}) {
+    const Outcome seen = outcome(program, {}, "", window, Pace{1, false});
+    EXPECT_FALSE(seen.failure) << seen.failure->what();
+    EXPECT_EQ(seen.executed, program);
+    EXPECT_THAT(seen.sent, HasSubstr("\n\nM105\n")) << "it was silent for long";
+  }
+}
+
+// The oks of the empty lines behind it come all the same.
+TEST(Uncounted, ASlowCommandWhoseAnswerGotLostIsNotTakenForGranted) {
+  const std::vector<std::string> program = slow_program();
+  Marlin firmware(Pace{1, false}, klipper());
+  FaultyPort port(firmware);
+  bool lost = false;
+  port.on_send = [&](std::string& bytes) {
+    if (bytes.find("PRINT_START") != std::string::npos && !std::exchange(lost, true)) bytes.clear();
+  };
+  PrintControl control;
+  const auto failure = print(port, true, text(program), control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("executed line 2 (PRINT_START BED=50)"));
 }
 
 TEST(Uncounted, ALostAnswerIsMadeUpFor) {
@@ -152,7 +181,7 @@ TEST(Uncounted, OneLineAtATimeWhateverTheWindow) {
 TEST(Uncounted, SomebodyMayMoveTheHeadInAPause) {
   std::vector<std::string> program = moves("M83", 60);
   program.insert(program.begin() + 5, "G1 Z0.3");
-  Marlin firmware(Pace{1, false}, uncounted());
+  Marlin firmware(Pace{1, false}, klipper());
   FaultyPort port(firmware);
   PrintControl control;
   int step = 0;
@@ -193,7 +222,7 @@ TEST(Uncounted, IsExactOrFails) {
   int through = 0;
   int failed = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    Marlin firmware(Pace{1, true}, uncounted());
+    Marlin firmware(Pace{1, true}, klipper());
     const bool doubles = seed % 2 == 0;
     FaultyPort port(firmware,
                     {.drop_chunk = doubles ? 0 : 0.01, .duplicate = doubles ? 0.004 : 0.0}, seed);
@@ -211,6 +240,29 @@ TEST(Uncounted, IsExactOrFails) {
   }
   EXPECT_GT(through, 10);
   EXPECT_GT(failed, 5);
+}
+
+GcodeTally asked_behind_a_line() {
+  GcodeTally tally;
+  tally.begin(false);
+  for (const bool asks_temperatures : {true, false, true}) tally.count_sent(asks_temperatures);
+  return tally;
+}
+
+bool is_proven_by(std::string_view oks) {
+  GcodeTally tally = asked_behind_a_line();
+  for (const char ok : oks) tally.count_ok(ok == 'T');
+  return tally.proves_line(true);
+}
+
+// Of a line, M105, an empty line and M105; "-": ok, "T": ok with temperatures.
+TEST(Tally, TellsTheLinesOwnOk) {
+  EXPECT_TRUE(is_proven_by("-T-T"));
+  EXPECT_TRUE(is_proven_by("-TT")) << "of a printer that answers no empty line";
+  EXPECT_FALSE(is_proven_by("T-T")) << "the line got lost";
+  EXPECT_FALSE(is_proven_by("-T")) << "the first or the last M105's";
+  EXPECT_FALSE(is_proven_by(""));
+  EXPECT_FALSE(GcodeTally(asked_behind_a_line()).proves_line(false));
 }
 
 GcodePoint after(const std::vector<std::string>& lines) {
@@ -249,7 +301,7 @@ TEST(Place, TellsALinesFate) {
   EXPECT_EQ(fate_of(moved, {10.0, 0.0, 0.0, 5.0}, true), GcodeFate::kUnknown);
   const GcodeTrace heats = place.follow("M104 S200");
   EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, true), GcodeFate::kTaken);
-  EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kMissed) << "again";
+  EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kRepeatable);
   const GcodeTrace macro = place.follow("START_PRINT");
   EXPECT_EQ(fate_of(macro, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kUnknown);
 }
