@@ -51,7 +51,7 @@ void FolderClerk::watch(const WatchOrder& order) {
   offered_.clear();
   file_troubles_.clear();
   trouble_.reset();
-  told_ = {};
+  told_.reset();
   retry_s_ = 0;
 }
 
@@ -148,7 +148,8 @@ void FolderClerk::leave_note(const WatchFolder::Ignored& ignored) const {
 }
 
 void FolderClerk::tell_trouble() {
-  FolderTold now{order_.printer, trouble_, 0};
+  if (order_.printer.empty()) return;
+  FolderTold now{order_.printer, folder_, trouble_, 0};
   if (!trouble_ && !file_troubles_.empty()) {
     const auto first = std::min_element(
         file_troubles_.begin(), file_troubles_.end(),
@@ -156,7 +157,7 @@ void FolderClerk::tell_trouble() {
     now.trouble = first->second;
     now.others = file_troubles_.size() - 1;
   }
-  if (now.trouble == told_.trouble && now.others == told_.others) return;
+  if (told_ && now.trouble == told_->trouble && now.others == told_->others) return;
   told_ = now;
   events_.push(std::move(now));
 }

@@ -54,7 +54,7 @@ class FolderClerk {
   std::set<std::filesystem::path> offered_;  // told of, and neither claimed nor refused so far
   std::optional<Trouble> trouble_;           // of the folder
   std::map<std::filesystem::path, Trouble> file_troubles_;
-  FolderTold told_;  // what was told last
+  std::optional<FolderTold> told_;  // what was told last; nothing: nothing of this watch
   double retry_s_ = 0;
 };
 

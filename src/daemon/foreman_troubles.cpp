@@ -12,7 +12,11 @@ constexpr const char* kPrinter = "printer";
 
 }  // namespace
 
-void Foreman::on(const FolderTold& event) { folders_told_[event.printer] = event; }
+// A clerk may not know yet that the printer has another folder now.
+void Foreman::on(const FolderTold& event) {
+  const PrinterConfig* printer = config_.printer(event.printer);
+  if (printer != nullptr && printer->folder == event.folder) folders_told_[event.printer] = event;
+}
 
 // One that hangs says nothing else any more.
 Troubles Foreman::folder_troubles(const PrinterConfig& printer) const {

@@ -154,8 +154,9 @@ struct FileIgnored {  // what lies in a watched folder is never taken
   std::filesystem::path file;
   std::string reason;
 };
-struct FolderTold {  // when it changed
+struct FolderTold {  // when it changed, and of each watch first
   std::string printer;
+  std::filesystem::path folder;
   std::optional<Trouble> trouble;  // of its folder, or of a file in it; nothing: all is well
   std::size_t others = 0;          // further files that have one too
 };

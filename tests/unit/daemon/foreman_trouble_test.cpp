@@ -103,7 +103,8 @@ TEST_F(TroubleTest, IsSeenWithItsPrinterAsThatOfItsFoldersIs) {
     return shop_.ask({{"verb", "printers.list"}}).at("result").at(number);
   };
   fail("nobody answers");
-  shop_.tell(FolderTold{"sim", Trouble{"its folder is not there", 5, 3, 9}, 2});
+  shop_.tell(FolderTold{"sim", shop_.config_.printer("sim")->folder,
+                        Trouble{"its folder is not there", 5, 3, 9}, 2});
   const json told = at(2).at("troubles");
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told.at(0), json({{"about", "folder"},
@@ -125,8 +126,16 @@ TEST_F(TroubleTest, IsSeenWithItsPrinterAsThatOfItsFoldersIs) {
   shop_.tell(ended);
   EXPECT_EQ(at(0).at("troubles").at(0).at("about"), "handoff_folder");
   EXPECT_NEAR(at(0).at("troubles").at(0).at("next_s"), wall_clock_s() + 10, 5);
-  shop_.tell(FolderTold{"sim", Trouble{"its folder is not there", 5, 4, 99}, 3});
+  shop_.tell(FolderTold{"sim", shop_.config_.printer("sim")->folder,
+                        Trouble{"its folder is not there", 5, 4, 99}, 3});
   EXPECT_EQ(times(shop_.log_, "its folder is not there"), 1) << "however many files, and tries";
+}
+
+TEST_F(TroubleTest, OfAFolderThatIsThePrintersNoMoreIsNotTaken) {
+  const Trouble trouble{"its folder is not there", 5, 3, 9};
+  shop_.tell(FolderTold{"sim", shop_.config_.printer("real")->folder, trouble, 0});
+  shop_.tell(FolderTold{"gone", shop_.config_.printer("sim")->folder, trouble, 0});
+  EXPECT_TRUE(shop_.foreman_->troubles_at(*shop_.config_.printer("sim")).empty());
 }
 
 TEST_F(TroubleTest, TellsWhenItIsTriedNext) {

@@ -101,7 +101,8 @@ void happen(Workshop& shop, int what, std::int64_t job) {
       shop.run_the_clerk();
       break;
     case 11:
-      shop.tell(FolderTold{"real", job % 2 == 0 ? std::optional(trouble) : std::nullopt, 1});
+      shop.tell(FolderTold{"real", shop.config_.printer("real")->folder,
+                           job % 2 == 0 ? std::optional(trouble) : std::nullopt, 1});
       break;
     case 13:
       shop.foreman_->note_troubles("test", job % 2 == 0 ? Troubles{{"all", trouble}} : Troubles{});
