@@ -53,14 +53,14 @@ Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>&
 void Cleaner::serve(double now_s) {
   now_s_ = now_s;
   if (!deleting_.empty() || now_s < next_s_) return;
-  next_s_ = now_s + kLookEvery_s;
   const double wall_s = wall_clock_s();
   look_at_room();
-  announce(wall_s);
+  look_back(wall_s);
   double until_s = announced_ ? 0 : kept_since_s(wall_s);
   if (room_ && room_->is_short()) until_s = std::max(until_s, wall_s - kDay_s);
   std::vector<JobRecord> jobs;
-  if (until_s > 0) jobs = store_.deletable(until_s, kAtATime + static_cast<int>(left_.size()));
+  if (until_s > 0)
+    jobs = store_.deletable(until_s, kAtATime + static_cast<int>(left_.size() + gone_.size()));
   add_wanted(jobs);
   std::erase_if(left_, [&](const auto& left) {
     return std::none_of(jobs.begin(), jobs.end(),
@@ -68,6 +68,8 @@ void Cleaner::serve(double now_s) {
   });
   if (left_.empty()) trouble_.reset();
   order(jobs);
+  next_s_ = now_s + kLookEvery_s;
+  record();
 }
 
 // Those that somebody deleted, as long as nobody needs their folders again.
@@ -97,19 +99,31 @@ void Cleaner::look_at_room() {
   told_low_ = room_->is_low();
 }
 
+Cleaner::Memory Cleaner::remembered() const {
+  if (unwritten_) return *unwritten_;
+  return {store_.remembered(kFrom).value_or(0), store_.remembered(kLooked).value_or(0)};
+}
+
 // Whoever comes from a version that kept everything, was away for a month, or whose clock leapt,
 // has seven days to say otherwise.
-void Cleaner::announce(double wall_s) {
-  const double looked_s = store_.remembered(kLooked).value_or(0);
-  double from_s = store_.remembered(kFrom).value_or(0);
-  const bool is_new = looked_s == 0 && store_.is_empty();
-  const bool leapt = !is_new && wall_s - looked_s > kLeap_s;
-  if (leapt || from_s > wall_s + kAnnounced_s) {
-    from_s = wall_s + kAnnounced_s;
-    store_.remember(kFrom, from_s);
+void Cleaner::look_back(double wall_s) {
+  Memory memory = remembered();
+  const double since_s = wall_s - memory.looked_s;
+  const bool is_new = memory.looked_s == 0 && store_.is_empty();
+  const bool leapt = !is_new && since_s > kLeap_s;
+  if (leapt || memory.from_s > wall_s + kAnnounced_s) {
+    memory.from_s = wall_s + kAnnounced_s;
     told_announced_ = false;
+    unwritten_ = memory;
   }
-  if (wall_s < looked_s || wall_s - looked_s > kDay_s) store_.remember(kLooked, wall_s);
+  if (since_s < 0 || since_s > kDay_s) {
+    memory.looked_s = wall_s;
+    unwritten_ = memory;
+  }
+  announce(memory.from_s, wall_s);
+}
+
+void Cleaner::announce(double from_s, double wall_s) {
   announced_.reset();
   if (wall_s >= from_s) return;
   const Announced announced{from_s, store_.count_deletable(kept_since_s(wall_s))};
@@ -154,25 +168,27 @@ void Cleaner::remove(const JobRecord& job) {
 }
 
 void Cleaner::order(const std::vector<JobRecord>& jobs) {
-  DeleteOrder wanted;
+  std::map<std::int64_t, std::string> wanted;
   for (const JobRecord& job : jobs) {
     if (const auto left = left_.find(job.id); left != left_.end() && now_s_ < left->second.retry_s)
       continue;
-    for (const JobRecord& other : store_.sharing(job)) {
-      if (!deleting_.try_emplace(other.id, other.folder).second) continue;
-      wanted.jobs.push_back(other.id);
-      wanted.folders.push_back(config_.state / "jobs" / std::to_string(other.id));
-    }
+    for (const JobRecord& other : store_.sharing(job))
+      if (!deleting_.contains(other.id) && !gone_.contains(other.id))
+        wanted.try_emplace(other.id, other.folder);
   }
-  if (!wanted.jobs.empty()) clerk_.push(std::move(wanted));
+  if (wanted.empty()) return;
+  DeleteOrder order;
+  for (const auto& item : wanted) {
+    order.jobs.push_back(item.first);
+    order.folders.push_back(config_.state / "jobs" / std::to_string(item.first));
+  }
+  deleting_.merge(wanted);
+  clerk_.push(std::move(order));
 }
 
 void Cleaner::on(const Deleted& event) {
   for (const std::int64_t id : event.jobs) {
-    if (std::optional<JobRecord> job = store_.find(id)) {
-      job->deleted_s = wall_clock_s();
-      store_.save(*job, "its folder was deleted");
-    }
+    gone_[id] = deleting_[id];
     deleting_.erase(id);
     left_.erase(id);
     wanted_.erase(id);
@@ -183,6 +199,26 @@ void Cleaner::on(const Deleted& event) {
   if (event.failure) put_off(event);
   if (left_.empty()) trouble_.reset();
   next_s_ = 0;
+  record();
+}
+
+// What cannot be written now is tried again at the next look. It is told by those who cannot do
+// without: the events of the jobs.
+void Cleaner::record() {
+  try {
+    while (!gone_.empty()) {
+      if (std::optional<JobRecord> job = store_.find(gone_.begin()->first)) {
+        job->deleted_s = wall_clock_s();
+        store_.save(*job, "its folder was deleted");
+      }
+      gone_.erase(gone_.begin());
+    }
+    if (!unwritten_) return;
+    store_.remember(kFrom, unwritten_->from_s);
+    store_.remember(kLooked, unwritten_->looked_s);
+    unwritten_.reset();
+  } catch (const Error&) {
+  }
 }
 
 // Told in one line until all of them could be deleted.
@@ -205,10 +241,13 @@ void Cleaner::put_off(const Deleted& event) {
 }
 
 bool Cleaner::is_gone(const JobRecord& job) const {
-  return job.deleted_s > 0 || deleting_.contains(job.id) ||
-         std::any_of(deleting_.begin(), deleting_.end(), [&](const auto& one) {
-           return !job.folder.empty() && one.second == job.folder;
-         });
+  const auto holds_it = [&](const std::map<std::int64_t, std::string>& folders) {
+    return folders.contains(job.id) ||
+           (!job.folder.empty() &&
+            std::any_of(folders.begin(), folders.end(),
+                        [&](const auto& one) { return one.second == job.folder; }));
+  };
+  return job.deleted_s > 0 || holds_it(deleting_) || holds_it(gone_);
 }
 
 }  // namespace packmerger

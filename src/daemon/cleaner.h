@@ -49,13 +49,15 @@ class Cleaner {
   Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>& clerk, Log log,
           Measure measure = disk_space);
 
-  // Looks from time to time. now_s: a clock that never goes back.
+  // Looks from time to time. now_s: a clock that never goes back. What cannot be recorded now is
+  // recorded later: folders are deleted where the disk has no room for a record.
   void serve(double now_s);
 
   // Deletes the folder of a job that has ended, whatever the settings keep. Throws Error{kUsage}
   // where it has not ended or was deleted, Error{kBusy} where its folder is still needed.
   void remove(const JobRecord& job);
 
+  // Throws nothing either where it cannot be recorded now.
   void on(const Deleted& event);
 
   // Whether the job's folder is there no more, or not for long.
@@ -67,8 +69,17 @@ class Cleaner {
   const std::optional<Trouble>& trouble() const { return trouble_; }
 
  private:
+  // Unix times that the store keeps.
+  struct Memory {
+    double from_s = 0;    // nothing is deleted before
+    double looked_s = 0;  // about when that was decided last
+  };
+
   void look_at_room();
-  void announce(double wall_s);
+  Memory remembered() const;
+  void look_back(double wall_s);
+  void announce(double from_s, double wall_s);
+  void record();
   double kept_since_s(double wall_s) const;
   void order(const std::vector<JobRecord>& jobs);
   void add_wanted(std::vector<JobRecord>& jobs) const;
@@ -82,6 +93,8 @@ class Cleaner {
   std::optional<Room> room_;
   std::optional<Announced> announced_;
   std::map<std::int64_t, std::string> deleting_;  // with the clerk; the folder of each
+  std::map<std::int64_t, std::string> gone_;      // deleted, and not recorded yet
+  std::optional<Memory> unwritten_;
   struct Left {
     int failures = 0;
     double retry_s = 0;  // not before, on the clock of serve()

@@ -164,6 +164,9 @@ void Foreman::advance(double now_s) {
   for (const std::int64_t id : jobs)
     if (const auto job = open.find(id); job != open.end()) try_for(id, [&] { step(job->second); });
   drop_idle_live_jobs();
+}
+
+void Foreman::clean(double now_s) {
   if (!stopping_) cleaner_.serve(now_s);
 }
 

@@ -85,6 +85,9 @@ class Foreman {
   // Starts whatever can be started. now_s: a clock that never goes back.
   void advance(double now_s);
 
+  // Has old jobs' folders deleted. Needs no write to the disk: one that is full is cleared first.
+  void clean(double now_s);
+
   // No further work is started, what runs is told to end. Prints end as failed.
   void stop();
 

@@ -95,6 +95,7 @@ class Loop {
       if (signal == SIGHUP) reload();
       const double now_s = steady_now_s();
       collect_events();
+      guarded(cleaning_, now_s, [&] { foreman_.clean(now_s); });
       guarded(jobs_, now_s, [&] {
         take_events(now_s + kHandleFor_s);
         exchange_printers();
@@ -118,7 +119,8 @@ class Loop {
   }
 
  private:
-  // What a round does with the jobs and their database, and with whoever asks.
+  // What a round does with old jobs' folders, with the jobs and their database, and with whoever
+  // asks.
   struct Part {
     const char* about;
     int most_doublings = 0;  // of the pause after a failure
@@ -156,8 +158,14 @@ class Loop {
     foreman_.note_troubles(part.about, std::move(troubles));
   }
 
+  // What was deleted waits for nothing: the room it made may be what the others cannot be recorded
+  // without.
   void collect_events() {
-    while (std::optional<Event> event = events_.try_pop()) unhandled_.push_back(std::move(*event));
+    while (std::optional<Event> event = events_.try_pop())
+      if (std::holds_alternative<Deleted>(*event))
+        foreman_.handle(*event);
+      else
+        unhandled_.push_back(std::move(*event));
   }
 
   // An event that could not be recorded stays the first. Thousands may come at once, and each is
@@ -224,6 +232,7 @@ class Loop {
   const Log& log_;
   std::map<std::string, fs::path> watched_;  // by printer
   std::deque<Event> unhandled_;
+  Part cleaning_{"deleting old jobs", 7};
   Part jobs_{"the jobs' database", 5};
   Part doors_{"socket and web server"};
 };

@@ -28,7 +28,7 @@ class Cleaning : public testing::Test {
   }
   void wait() {
     shop_.now_s_ += 60;
-    shop_.foreman_->advance(shop_.now_s_);
+    shop_.turn();
     shop_.run_the_clerk();
   }
   fs::path folder(std::int64_t id) { return shop_.config_.state / "jobs" / std::to_string(id); }
@@ -188,7 +188,8 @@ TEST_F(Cleaning, WhatCannotBeDeletedIsTriedEverLessOftenToldOnceAndSeen) {
   int tries = 0;
   const auto pass = [&](double hours) {
     for (const double end_s = shop_.now_s_ + 3600 * hours; shop_.now_s_ < end_s;) {
-      shop_.foreman_->advance(shop_.now_s_ += 30);
+      shop_.now_s_ += 30;
+      shop_.turn();
       while (const std::optional<ClerkOrder> order = shop_.clerk_order()) {
         Deleted deleted;
         for (const std::int64_t job : std::get<DeleteOrder>(*order).jobs)
@@ -223,7 +224,7 @@ TEST_F(Cleaning, WhatCannotBeDeletedIsTriedEverLessOftenToldOnceAndSeen) {
   EXPECT_GE(tries, before + 2) << "what somebody deleted is tried again, whatever is kept";
   shop_.config_.keep_days = 90;
   shop_.now_s_ += 7200;
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.turn();
   shop_.run_the_clerk();
   EXPECT_FALSE(is_there(stays));
   EXPECT_EQ(troubles(), json::array());

@@ -69,6 +69,12 @@ class Workshop {
                                          [this](const std::string& line) { log_ += line + "\n"; });
     foreman_->recover();
     run_claims();
+    turn();
+  }
+
+  // What the loop does again and again.
+  void turn() {
+    foreman_->clean(now_s_);
     foreman_->advance(now_s_);
   }
 
@@ -77,13 +83,13 @@ class Workshop {
     std::ofstream(file) << "model " << drops_++;
     foreman_->handle(Arrived{name, file, has_settings_beside(file)});
     run_claims();
-    foreman_->advance(now_s_);
+    turn();
     return file;
   }
 
   void tell(const Event& event) {
     foreman_->handle(event);
-    foreman_->advance(now_s_);
+    turn();
   }
 
   std::optional<PrepareOrder> prepare_order() { return crew_->workers.try_pop(); }

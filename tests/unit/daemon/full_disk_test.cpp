@@ -1,0 +1,65 @@
+// What goes on where the disk with the state folder takes no more.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "unit/daemon/workshop.h"
+
+namespace packmerger {
+namespace {
+
+// While it lives, nothing can be written to a file.
+class FullDisk {
+ public:
+  FullDisk() : handler_(::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &none);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    ::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST(FullDiskTest, IsClearedBeforeAnythingIsRecorded) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  const PrepareOrder order = shop.prepare_order().value();
+  shop.prepare(order);
+  shop.send_order("sim");
+  shop.tell(SendEnded{order.job, SendOutcome::kDone, {}, ""});
+  shop.run_the_clerk();
+  JobRecord job = shop.job(order.job);
+  job.ended_s -= 100 * 86400.0;
+  shop.store_->save(job);
+  shop.store_->remember("cleaning_looked_s", wall_clock_s() - 2 * 86400.0);  // due to be written
+  const fs::path folder = shop.config_.state / "jobs" / std::to_string(job.id);
+  ASSERT_TRUE(fs::exists(folder));
+  {
+    const FullDisk full;
+    const Arrived pending{"sim", shop.config_.printer("sim")->folder / "b.stl", false};
+    EXPECT_THROW(shop.foreman_->handle(pending), Error);
+    shop.foreman_->clean(shop.now_s_ += 60);
+    const std::optional<ClerkOrder> wanted = shop.clerk_order();
+    ASSERT_TRUE(wanted && std::holds_alternative<DeleteOrder>(*wanted));
+    shop.foreman_->handle(clear_away(std::get<DeleteOrder>(*wanted)));
+    EXPECT_FALSE(fs::exists(folder));
+    EXPECT_EQ(shop.job(job.id).deleted_s, 0) << "there is no room to record it";
+    EXPECT_EQ(shop.view(job.id).at("folder"), "") << "but nobody is sent there";
+    shop.foreman_->clean(shop.now_s_ += 60);
+    EXPECT_FALSE(shop.clerk_order()) << "it is not deleted again and again";
+  }
+  shop.foreman_->clean(shop.now_s_ += 60);
+  EXPECT_GT(shop.job(job.id).deleted_s, 0);
+  EXPECT_NEAR(shop.store_->remembered("cleaning_looked_s").value(), wall_clock_s(), 3600);
+}
+
+}  // namespace
+}  // namespace packmerger
