@@ -293,8 +293,10 @@ PrinterRecord Foreman::pause(const std::string& name, bool paused) {
   LiveJob* live = printing_at(name);
   PrinterRecord printer = store_.printer(name);
   printer.paused = paused;
+  // Whoever wants a print to stand must not wait for room on a disk.
+  if (live != nullptr && paused) live->control->pause();
   store_.save(printer);
-  if (live != nullptr) paused ? live->control->pause() : live->control->resume();
+  if (live != nullptr && !paused) live->control->resume();
   log_("printer " + name + (paused ? ": paused, no new print starts" : ": resumed"));
   return printer;
 }

@@ -61,5 +61,21 @@ TEST(FullDiskTest, IsClearedBeforeAnythingIsRecorded) {
   EXPECT_NEAR(shop.store_->remembered("cleaning_looked_s").value(), wall_clock_s(), 3600);
 }
 
+TEST(FullDiskTest, APauseReachesThePrinterAndAResumeOnlyWhereItIsKept) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.prepare(shop.prepare_order().value());
+  const SendOrder send = shop.send_order("sim").value();
+  {
+    const FullDisk full;
+    EXPECT_THROW(shop.foreman_->pause("sim", true), Error);
+    EXPECT_EQ(send.control->take_pause_request(), true);
+    EXPECT_THROW(shop.foreman_->pause("sim", false), Error);
+    EXPECT_EQ(send.control->take_pause_request(), std::nullopt);
+  }
+  shop.foreman_->pause("sim", false);
+  EXPECT_EQ(send.control->take_pause_request(), false);
+}
+
 }  // namespace
 }  // namespace packmerger
