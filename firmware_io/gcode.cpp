@@ -94,9 +94,10 @@ bool is_long(std::string_view command) {
   static constexpr std::array<std::string_view, 13> kWords = {
       "G4", "G28", "G29", "G30", "G32", "M0", "M1", "M400", "M226", "M600", "M601", "M109", "M190"};
   const std::string_view word = gcode_word(command);
-  const bool is_macro = word.size() < 2;  // PRINT_START: whatever its user made of it
-  return is_macro || one_of(word, kWords);
+  return is_macro(command) || one_of(word, kWords);
 }
+
+bool is_macro(std::string_view command) { return gcode_word(command).size() < 2; }
 
 bool blocks(std::string_view command) { return is_heating(command) || is_long(command); }
 

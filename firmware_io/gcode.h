@@ -57,8 +57,9 @@ std::string numbered_gcode(std::size_t number, std::string_view command);
 std::string_view gcode_word(std::string_view command);
 
 bool is_heating(std::string_view command);  // blocks until a temperature is reached
-bool is_long(std::string_view command);  // may block long: homing, dwelling, a macro of the user's
-bool blocks(std::string_view command);   // either of them
+bool is_long(std::string_view command);   // may block long: homing, dwelling, a macro of the user's
+bool is_macro(std::string_view command);  // PRINT_START: whatever its user made of it
+bool blocks(std::string_view command);    // either of them
 double dwell_s(std::string_view command);       // what G4, M0 or M1 says that it will take; else 0
 bool tells_position(std::string_view command);  // M114, and homing and probing at their end
 bool waits_for_user(std::string_view command);  // M0 or M1 without a time

@@ -1,9 +1,11 @@
 #include "firmware_io/gcode_place.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
+#include "firmware_io/gcode.h"
 #include "gcode/known_codes.h"
 
 namespace packmerger {
@@ -54,14 +56,16 @@ GcodePoint read_gcode_point(std::string_view report) {
 GcodeTrace GcodePlace::follow(std::string_view command) {
   const GcodeLine line(command, GcodeRules::kMarlin);
   GcodeTrace trace{at_, {}, true};
-  if (line.letter() == 'G' && line.sub_number() == 0)
-    trace.repeatable = line.readable() && follow_g(line);
+  if (is_macro(command) && !line.is_empty())
+    trace.repeatable = lose();
+  else if (line.letter() == 'G' && line.sub_number() == 0)
+    trace.repeatable = line.readable() ? follow_g(line) : lose();
   else if (line.letter() == 'M' && line.sub_number() == 0)
     trace.repeatable = follow_m(line);
   else if (line.letter() == 'T')
     at_ = {};
   else if (!line.is_empty())
-    trace.repeatable = false, at_ = {};  // a macro
+    trace.repeatable = lose();
   trace.after = at_;
   return trace;
 }
@@ -96,8 +100,10 @@ bool GcodePlace::follow_g(const GcodeLine& line) {
       if (relative_e_ != relative_) relative_e_.reset();
       return true;
     case 92:
+      if (std::none_of(kAxes.begin(), kAxes.end(), [&](char axis) { return line.has(axis); }))
+        at_ = {};  // all of them, or in some firmwares none
       for (std::size_t i = 0; i < kAxes.size(); ++i)
-        if (line.has(kAxes[i])) at_[i] = inches_ ? std::nullopt : line.value(kAxes[i]);
+        if (line.has(kAxes[i])) at_[i] = inches_ == false ? line.value(kAxes[i]) : std::nullopt;
       return true;
     default:
       return leave(line);
@@ -127,7 +133,7 @@ bool GcodePlace::move(const GcodeLine& line) {
     const std::optional<double> to = line.value(kAxes[i]);
     const std::optional<bool> relative = i == kE ? relative_e_ : relative_;
     repeatable = repeatable && relative == false;
-    if (!to || inches_ || !relative || (*relative && !at_[i]))
+    if (!to || inches_ != false || !relative || (*relative && !at_[i]))
       at_[i].reset();
     else
       at_[i] = *relative ? *at_[i] + *to : *to;
@@ -140,6 +146,14 @@ bool GcodePlace::leave(const GcodeLine& line) {
   const bool stays = !cannot_follow(line, GcodeRules::kMarlin);
   if (!stays) at_ = {};
   return stays;
+}
+
+bool GcodePlace::lose() {
+  at_ = {};
+  relative_.reset();
+  relative_e_.reset();
+  inches_.reset();
+  return false;
 }
 
 GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {

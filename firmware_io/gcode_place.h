@@ -19,7 +19,7 @@ GcodePoint read_gcode_point(std::string_view report);
 struct GcodeTrace {
   GcodePoint before;
   GcodePoint after;
-  bool repeatable = true;
+  bool repeatable = false;
 };
 
 class GcodePlace {
@@ -36,12 +36,14 @@ class GcodePlace {
   bool follow_m(const GcodeLine& line);
   bool move(const GcodeLine& line);
   bool leave(const GcodeLine& line);
+  bool lose();  // a line that may have done anything
 
   GcodePoint at_;
-  bool relative_ = false;
+  // Empty: not known, as behind a macro.
+  std::optional<bool> relative_ = false;
   // G90 and G91 are for E too in some firmwares and not in others; empty where that decides.
   std::optional<bool> relative_e_ = false;
-  bool inches_ = false;
+  std::optional<bool> inches_ = false;
 };
 
 enum class GcodeFate {

@@ -2,10 +2,11 @@
 // temperatures.
 #pragma once
 
-#include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "firmware_io/print_state.h"
@@ -14,18 +15,18 @@ namespace packmerger {
 
 class HeatWatch {
  public:
-  // `command` is waited for from now on: M109 for a tool, M190 for the bed, M191 for the chamber;
-  // with any other nothing is.
+  // `command` is waited for from now on: M109 for a tool, M190 for the bed, M191 for the chamber, a
+  // macro for whatever has a target; with any other nothing is.
   void begin(std::string_view command);
 
-  // True where the heater that is waited for has come at least 0.1 °C nearer to its target than
-  // ever before, so a heater that stands still cannot seem to move for long.
+  // True where a heater that is waited for has come at least 0.1 °C nearer to its target than ever
+  // before, so a heater that stands still cannot seem to move for long.
   bool comes_nearer(const std::vector<HeaterReport>& heaters);
 
  private:
-  std::string heater_;  // how its name begins; empty: none is waited for
+  std::optional<std::string> heater_;  // how its name begins; nullopt: none is waited for
   std::optional<double> target_c_;
-  double nearest_c_ = std::numeric_limits<double>::infinity();
+  std::map<std::pair<std::string, double>, double> nearest_c_;  // by name and target
 };
 
 }  // namespace packmerger
