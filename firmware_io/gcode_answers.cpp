@@ -77,9 +77,18 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
   }
 }
 
+// One that checks sums and counts nothing asks for what came garbled, and can only mean the line
+// given last. Which kind it is, the answer to the probe decides.
 void GcodeStream::handle_resend(std::size_t asked) {
-  line_count_ = LineCount::kKept;
+  tally_.count_refusal();
+  if (line_count_ == LineCount::kUnknown) {
+    in_doubt_ = true;
+    // The line that it lacks is a late one; one that counts nothing names the probe's own number.
+    if (probes_ && asked > 0 && asked <= last_ + 1 && asked + kSlack >= last_)
+      line_count_ = LineCount::kKept;
+  }
   std::size_t next = asked;
+  if (line_count_ == LineCount::kIgnored) asked = next = last_;
   if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
   // A printer that was reset asks for line 1; in the first lines that would seem to be near. Line 1
   // itself may have lost its number on the way, and was answered as a line without one.
@@ -174,7 +183,8 @@ bool GcodeStream::wants_proof() const {
 // Of a printer that does not tell them by itself, and to prove where it is.
 void GcodeStream::ask_temperatures() {
   constexpr double kPoll_s = 5;
-  if (resend_ || m105_behind_ || unanswered_.size() >= kMostLines) return;
+  if (resend_ || m105_behind_ || probes_ || asks_position_ || unanswered_.size() >= kMostLines)
+    return;
   const bool polls = !abilities_.autoreport && !cancelling_ &&
                      channel_.now_s() - asked_temperatures_at_s_ >= kPoll_s;
   if (!polls && !wants_proof()) return;

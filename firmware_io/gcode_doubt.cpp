@@ -6,8 +6,9 @@ namespace packmerger {
 
 namespace {
 
-// A number so far ahead that no printer takes it for a doubled line.
-constexpr std::size_t kFarAhead = 1000;
+// A number so far ahead that no printer takes it for a doubled line, nor one garbled digit makes it
+// one that was given.
+constexpr std::size_t kFarAhead = 2345;
 constexpr int kTries = 3;
 // A line that loses more is bad, and flips bits too, which nobody could see here.
 constexpr int kMostMissed = 5;
@@ -19,7 +20,7 @@ constexpr double kOwed_s = 2;
 
 bool GcodeStream::is_in_doubt() const {
   return (in_doubt_ || was_silent_) && line_count_ != LineCount::kKept && !cancelling_ &&
-         !resend_ && last_ > 0;
+         !resend_ && last_ > settled_;
 }
 
 // Returns the line to give again, where it got lost.
@@ -32,7 +33,9 @@ std::optional<std::size_t> GcodeStream::settle_doubt() {
     return std::nullopt;
   }
   std::optional<std::size_t> again = learn_line_count();
-  if (!again && line_count_ == LineCount::kIgnored && !cancelling_)
+  const bool counts = line_count_ == LineCount::kKept;
+  // One that says nothing to the probe may be either.
+  if (!again && !counts && !cancelling_ && (line_count_ == LineCount::kIgnored || !answered))
     again = prove_by_position(answered);
   in_doubt_ = was_silent_ = false;
   return again;
@@ -57,7 +60,8 @@ std::optional<std::size_t> GcodeStream::learn_line_count() {
     send_raw(line, true);
     const auto again = hear_answers();
     probes_ = false;
-    if (again) return again;
+    if (again && line_count_ == LineCount::kKept) return again;
+    resend_.reset();
   }
   return std::nullopt;
 }
@@ -73,6 +77,7 @@ std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
   for (int i = 0; i < kTries && fate == GcodeFate::kUnknown; ++i) {
     told_.reset();
     asks_position_ = true;
+    ++positions_owed_;
     send_raw("M114");
     const auto again = hear_answers();
     hear_what_came(kSettle_s);
@@ -81,15 +86,18 @@ std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
     if (again) return again;
     if (told_) fate = fate_of(trace_, *told_, answered);
   }
-  taken_for_granted_ = false;
   if (fate == GcodeFate::kTaken) {
+    taken_for_granted_ = false;
     place_.learn(*told_);
     return std::nullopt;
   }
-  if (fate == GcodeFate::kUnknown || (fate == GcodeFate::kMissed && ++missed_ > kMostMissed) ||
-      (fate == GcodeFate::kRepeatable && ++repeated_ > kMostRepeated))
-    fail_in_doubt(answered);
-  return last_;
+  const bool fails = fate == GcodeFate::kUnknown ||
+                     (fate == GcodeFate::kMissed && ++missed_ > kMostMissed) ||
+                     (fate == GcodeFate::kRepeatable && ++repeated_ > kMostRepeated);
+  if (!fails) return last_;
+  // One that may count after all asks for what it lacks.
+  if (line_count_ == LineCount::kIgnored) fail_in_doubt(answered);
+  return std::nullopt;
 }
 
 void GcodeStream::fail_in_doubt(bool answered) const {
@@ -100,6 +108,10 @@ void GcodeStream::fail_in_doubt(bool answered) const {
   if (missed_ > kMostMissed)
     fail("The way to the printer loses lines, such as " + line +
              ", and the printer checks neither their numbers nor their sums",
+         hint);
+  if (!told_)
+    fail("The printer does not say where it is (M114), so nobody can tell whether it executed " +
+             line,
          hint);
   if (answered)
     fail(

@@ -105,7 +105,7 @@ std::size_t GcodeStream::pause(std::size_t number) {
   pause_text_.clear();
   between_ = false;
   place_.forget();
-  trace_ = {};
+  settled_ = last_;
   return number;
 }
 

@@ -1,6 +1,7 @@
 #include "firmware_io/gcode_stream.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 
@@ -23,9 +24,7 @@ GcodeStream::GcodeStream(GcodeChannel& channel, GcodeScript commands, const Stre
       options_(options),
       abilities_(abilities),
       reporter_(reporter),
-      control_(control),
-      // Several lines on their way can be put right only where the printer counts them.
-      in_doubt_(options.window_bytes > 0) {}
+      control_(control) {}
 
 void GcodeStream::run() {
   reporter_.state(PrintState::kPrinting);
@@ -77,6 +76,9 @@ std::size_t GcodeStream::exchange(std::size_t number) {
   if (const auto again = hear_answers()) return *again;
   if (is_in_doubt())
     if (const auto again = settle_doubt()) return *again;
+  // Several lines on their way can be put right only where the printer counts them.
+  if (options_.window_bytes > 0 && !std::exchange(asked_whether_it_counts_, true))
+    if (const auto again = learn_line_count()) return *again;
   if (taken_for_granted_) careful_until_ = last_ + kCareful;
   unproven_ = taken_for_granted_ ? unproven_ + 1 : 0;
   if (unproven_ > kMaxUnproven)
@@ -188,7 +190,6 @@ void GcodeStream::handle(const GcodeReply& reply) {
       break;
     case GcodeReplyKind::kPosition:
       hear_position(reply);
-      if (!tells_position(command(last_)) && !asks_position_) positions_unasked_ = true;
       break;
     default:
       cancelling_ ? hear_while_cancelling(reply) : handle_action(reply);
@@ -198,6 +199,10 @@ void GcodeStream::handle(const GcodeReply& reply) {
 
 void GcodeStream::hear_position(const GcodeReply& reply) {
   if (is_behind_program(last_)) position_seen_ = true;
+  if (positions_owed_ > 0)
+    --positions_owed_;
+  else if (!tells_position(command(last_)) && !reply.has_position)
+    positions_unasked_ = true;
   if (asks_position_) told_ = read_gcode_point(reply.text);
 }
 

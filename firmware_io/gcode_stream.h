@@ -178,6 +178,7 @@ class GcodeStream {
   bool probes_ = false;         // it is being asked whether it counts lines,
   double probed_at_s_ = 0;      // since then
   bool asks_position_ = false;  // M114 was sent to find out
+  int positions_owed_ = 0;      // by the M114 that were sent for that
   std::optional<GcodePoint> told_;
 
   // over several exchanges
@@ -195,6 +196,8 @@ class GcodeStream {
   bool positions_unasked_ = false;   // it reports its position of its own (M154)
   double busy_interval_s_ = 0;       // the longest
   LineCount line_count_ = LineCount::kUnknown;
+  bool asked_whether_it_counts_ = false;
+  std::size_t settled_ = 0;  // the line up to which nothing is in doubt any more
   GcodePlace place_;
   GcodeTrace trace_;  // of the line given last
   int missed_ = 0;    // lines that got lost on their way to a printer that counts none

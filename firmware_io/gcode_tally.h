@@ -13,6 +13,8 @@ class GcodeTally {
   void begin(bool asks_temperatures);
   // Something was sent behind it, be it an empty line.
   void count_sent(bool asks_temperatures);
+  // The printer asked for a line again, and says ok behind that.
+  void count_refusal() { ++owed_; }
   // Returns whether that many were owed.
   bool count_ok(bool has_temperature);
 

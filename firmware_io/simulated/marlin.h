@@ -52,6 +52,7 @@ class Marlin : public Firmware {
   void take_line(std::string line, double now_s);
   bool take_number(std::string& line);
   void refuse_line(const std::string& why);
+  void ask_for(long number);
   void heed_answer(const std::string& line);
   void heed_at_once(const std::string& line, double now_s);
   void say(const std::string& line) { output_ += line + "\n"; }

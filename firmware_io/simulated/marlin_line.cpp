@@ -28,6 +28,14 @@ std::size_t behind_number(const std::string& line) {
   return std::min(end, line.size());
 }
 
+bool has_right_sum(const std::string& line) {
+  const std::size_t star = line.rfind('*');
+  if (star == std::string::npos) return false;
+  int sum = 0;
+  for (std::size_t i = star; i-- > 0;) sum = (sum ^ line[i]) & 0xFF;
+  return std::atoi(line.c_str() + star + 1) == sum;
+}
+
 }  // namespace
 
 bool Marlin::is(const std::string& command, const std::string& word) {
@@ -68,9 +76,11 @@ void Marlin::read_lines(double now_s) {
 
 void Marlin::take_line(std::string line, double now_s) {
   line = without_comment(line.substr(0, kLongestLine));
-  if (line.empty() && traits_.counts_lines) return;  // an empty line gets no ok
+  if (line.empty() && (traits_.counts_lines || traits_.checks_sums)) return;  // gets no ok
   const bool numbered = traits_.counts_lines && line[0] == 'N';
   if (numbered && !take_number(line)) return;
+  const bool checks_sum = !traits_.counts_lines && traits_.checks_sums && line[0] == 'N';
+  if (checks_sum && !has_right_sum(line)) return ask_for(std::atol(line.c_str() + 1));
   line.erase(std::min(line.rfind('*'), line.size()));
   if (!traits_.counts_lines) line.erase(0, behind_number(line));
   // Without an emergency parser a command acts before its turn when its line is read, and only
@@ -97,9 +107,7 @@ bool Marlin::take_number(std::string& line) {
     refuse_line("No Checksum with line number");
     return false;
   }
-  int sum = 0;
-  for (std::size_t i = star; i-- > 0;) sum = (sum ^ line[i]) & 0xFF;
-  if (std::atoi(line.c_str() + star + 1) != sum) {
+  if (!has_right_sum(line)) {
     refuse_line("checksum mismatch");
     return false;
   }
@@ -111,9 +119,12 @@ bool Marlin::take_number(std::string& line) {
 // What was received behind the bad line is thrown away with it.
 void Marlin::refuse_line(const std::string& why) {
   received_.clear();
-  const std::string wanted = std::to_string(last_number_ + 1);
   if (traits_.resend_error) say("Error:" + why + ", Last Line: " + std::to_string(last_number_));
-  say((traits_.resend_short ? "rs N" : "Resend: ") + wanted);
+  ask_for(last_number_ + 1);
+}
+
+void Marlin::ask_for(long number) {
+  say((traits_.resend_short ? "rs N" : "Resend: ") + std::to_string(number));
   if (traits_.resend_ok) say("ok");
 }
 

@@ -30,6 +30,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"heats_quietly", &T::heats_quietly},
                                  {"doubled_ok", &T::doubled_ok},
                                  {"counts_lines", &T::counts_lines},
+                                 {"checks_sums", &T::checks_sums},
                                  {"macros", &T::macros},
                                  {"comment_blank", &T::comment_blank}};
   return names;

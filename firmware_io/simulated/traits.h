@@ -31,8 +31,10 @@ struct MarlinTraits {
   bool doubled_ok = false;         // every fifth ok comes twice
   bool counts_lines = true;        // else it looks at neither number nor checksum, nor asks for a
                                    // line, and says ok to an empty one, as Klipper does
-  bool macros = false;             // a command that begins with a word takes eight seconds
-  bool comment_blank = false;      // "// action:", "// Unknown command:", as Klipper writes them
+  bool checks_sums = false;    // where it counts no lines: it asks for one whose sum is wrong, by
+                               // that line's own number, as old RepRapFirmware does
+  bool macros = false;         // a command that begins with a word takes eight seconds
+  bool comment_blank = false;  // "// action:", "// Unknown command:", as Klipper writes them
 };
 
 MarlinTraits marlin_1_1();

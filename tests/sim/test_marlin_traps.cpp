@@ -275,6 +275,14 @@ TEST(MarlinTraps, LooksAtNoNumberAndAnswersAnEmptyLine) {
   EXPECT_EQ(wire.says(line(7, "M82") + line(7, "M82") + "N1 M83*99\n\n"), "ok\nok\nok\nok\n");
 }
 
+TEST(MarlinTraps, ChecksSumsButCountsNothing) {
+  MarlinTraits traits = with("counts_lines=off");
+  traits.checks_sums = true;
+  Marlin marlin(kRealTime, traits);
+  Wire wire(marlin);
+  EXPECT_EQ(wire.says(line(7, "M82") + line(3, "M82") + "\nN9 M83*1\n"), "ok\nok\nResend: 9\nok\n");
+}
+
 TEST(MarlinTraps, AMacroTakesItsTime) {
   Marlin marlin(kRealTime, with("macros"));
   Wire wire(marlin);

@@ -11,7 +11,9 @@ namespace {
 
 using simulated::klipper;
 using simulated::Marlin;
+using simulated::MarlinTraits;
 using simulated::Pace;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 // Moves that each lead elsewhere, with filament as `mode` (M82 or M83) has it.
@@ -175,6 +177,87 @@ TEST(Uncounted, OneLineAtATimeWhateverTheWindow) {
   EXPECT_EQ(seen.executed, program);
 }
 
+// Old RepRapFirmware asks for what came garbled, and counts nothing all the same.
+TEST(Uncounted, AnythingLostIsFoundThoughSumsAreChecked) {
+  const std::vector<std::string> program = moves("M83", 60);
+  for (const std::size_t window : {0U, 96U}) {
+    MarlinTraits traits = klipper();
+    traits.checks_sums = true;
+    Marlin firmware(Pace{1, true}, traits);
+    FaultyPort port(firmware);
+    std::size_t step = 0;
+    port.on_send = [&](std::string& bytes) {
+      if (step == 5 || bytes.find(program[10 * (step + 1)] + "*") == std::string::npos) return;
+      if (++step % 2 == 1)
+        bytes[bytes.find('X') + 1] ^= 1;
+      else
+        bytes.clear();
+    };
+    PrintControl control;
+    StreamOptions options = scenario_options();
+    options.window_bytes = window;
+    const auto failure = print(port, true, text(program), control, {}, options);
+    EXPECT_FALSE(failure) << failure->what();
+    EXPECT_EQ(step, 5u);
+    EXPECT_EQ(only(port.executed(), program), program);
+  }
+}
+
+// A window asks a printer whether it counts; nothing got lost, and the place is nobody's business.
+TEST(Uncounted, AWindowAccusesNobody) {
+  const std::vector<std::string> program = moves("M83", 60);
+  const Outcome seen = outcome(program, {}, "", 96);
+  EXPECT_FALSE(seen.failure) << seen.failure->what();
+  EXPECT_EQ(seen.sent.find("\nM114\n"), std::string::npos);
+}
+
+// A polled M105 is answered by any printer.
+TEST(Uncounted, APollIsNoProbe) {
+  const std::vector<std::string> program = moves("M83", 60);
+  MarlinTraits traits;
+  traits.autoreport = false;
+  traits.busy = false;
+  Marlin firmware(Pace{1, false}, traits);
+  FaultyPort port(firmware);
+  double lost_from_s = simulated::kNever;
+  bool probed_twice = false;
+  port.on_send = [&](std::string& bytes) {
+    if (bytes.find(" M105*") == std::string::npos) return;
+    probed_twice = lost_from_s < simulated::kNever;
+    lost_from_s = std::min(lost_from_s, port.now_s());
+  };
+  port.on_step = [&](std::size_t) {
+    port.lose_answers = port.now_s() >= lost_from_s && port.now_s() < lost_from_s + 0.1;
+  };
+  PrintControl control;
+  StreamOptions options = scenario_options();
+  options.timeout_s = 60;
+  options.window_bytes = 96;
+  const auto failure = print(port, true, text(program), control, {}, options);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_TRUE(probed_twice);
+  EXPECT_EQ(only(port.executed(), program), program);
+}
+
+// The three probes get lost, and what they were sent for: the place tells all the same.
+TEST(Uncounted, WhatNoProbeSettledThePlaceTells) {
+  const std::vector<std::string> program = moves("M83", 60);
+  bool lost = false;
+  int probes = 0;
+  Marlin firmware(Pace{1, true}, klipper());
+  FaultyPort port(firmware);
+  port.on_send = [&](std::string& bytes) {
+    const bool is_line = bytes.find(program[30] + "*") != std::string::npos;
+    const bool is_probe = bytes.find(" M105*") != std::string::npos;
+    if ((is_line && !std::exchange(lost, true)) || (is_probe && ++probes <= 3)) bytes.clear();
+  };
+  PrintControl control;
+  const auto failure = print(port, true, text(program), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_GE(probes, 3);
+  EXPECT_EQ(only(port.executed(), program), program);
+}
+
 // And by whose command there is an ok more.
 TEST(Uncounted, SomebodyMayMoveTheHeadInAPause) {
   std::vector<std::string> program = moves("M83", 60);
@@ -219,23 +302,37 @@ TEST(Uncounted, IsExactOrFails) {
   const std::vector<std::string> program = moves("M83", 200);
   int through = 0;
   int failed = 0;
+  int unharmed = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Marlin firmware(Pace{1, true}, klipper());
     const bool doubles = seed % 2 == 0;
     FaultyPort port(firmware,
-                    {.drop_chunk = doubles ? 0 : 0.01, .duplicate = doubles ? 0.004 : 0.0}, seed);
+                    {.drop_chunk = seed % 3 == 0 || doubles ? 0 : 0.01,
+                     .duplicate = doubles && seed % 3 != 0 ? 0.004 : 0.0,
+                     .delay = 0.05,
+                     .longest_delay_s = 2},
+                    seed);
     PrintControl control;
     StreamOptions options = scenario_options();
     options.timeout_s = 5;
     const auto failure = print(port, true, text(program), control, {}, options);
     const auto executed = without_harmless_repeats(only(port.executed(), program));
     ++(failure ? failed : through);
+    unharmed += seed % 3 == 0;
+    EXPECT_EQ(port.sent.find("M154"), std::string::npos) << "no position came unasked";
     if (failure) {
-      EXPECT_FALSE(failure->hint().empty());
+      EXPECT_NE(seed % 3, 0u) << "nothing was lost or doubled: " << failure->what();
+      EXPECT_THAT(failure->what(), AnyOf(HasSubstr("loses lines"), HasSubstr("is not where line"),
+                                         HasSubstr("Nobody can tell"), HasSubstr("(M114)")));
+      const auto n = static_cast<std::ptrdiff_t>(std::min(executed.size(), program.size()));
+      const bool is_beginning =
+          std::equal(executed.begin(), executed.end(), program.begin(), program.begin() + n);
+      EXPECT_TRUE(is_beginning || doubles) << seed;
     } else {
       EXPECT_EQ(executed, program) << seed;
     }
   }
+  EXPECT_EQ(unharmed, 20);
   EXPECT_GT(through, 10);
   EXPECT_GT(failed, 5);
 }
