@@ -128,8 +128,10 @@ void GcodeStream::handle_busy(const GcodeReply& reply) {
   if (!stands_still()) busy_interval_s_ = std::max(busy_interval_s_, interval_s);
   if (cancelling_)
     hear_while_cancelling(reply);
-  else if (reply.waiting && now - answered_at_s_ >= kAnswerHeard_s)
+  else if (reply.waiting && now - answered_at_s_ >= kAnswerHeard_s) {
+    question_answered_ = false;
     reporter_.state(PrintState::kWaiting, prompt_, choices_);
+  }
 }
 
 void GcodeStream::watch_silence() {

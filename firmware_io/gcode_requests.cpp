@@ -37,7 +37,8 @@ void GcodeStream::obey_requests() {
 void GcodeStream::pass_on(int answer) {
   send_raw(abilities_.emergency_parser ? "M876 S" + std::to_string(answer) : std::string("M108"));
   answered_at_s_ = channel_.now_s();
-  if (between_) return close_question();
+  question_answered_ = true;
+  if (between_) return show_pause();
   stands_still() ? reporter_.state(PrintState::kPaused, pause_text_) : show_state();
 }
 
@@ -46,6 +47,7 @@ bool GcodeStream::stands_still() const { return between_ || (paused_ && !parks_)
 void GcodeStream::close_question() {
   prompt_.clear();
   choices_.clear();
+  question_answered_ = false;
   if (stands_still()) show_pause();
 }
 
@@ -63,6 +65,7 @@ void GcodeStream::handle_action(const GcodeReply& reply) {
     case GcodeReplyKind::kPrompt:
       prompt_ = reply.text;
       choices_.clear();
+      question_answered_ = false;
       return reporter_.state(PrintState::kWaiting, prompt_, choices_);
     case GcodeReplyKind::kPromptButton:
       choices_.push_back(reply.text);
@@ -109,11 +112,12 @@ std::size_t GcodeStream::pause(std::size_t number) {
   return number;
 }
 
-// A question with answers stays until it is answered, though the printer stands paused.
+// A question with answers is shown until it is answered, though the printer stands paused.
 void GcodeStream::show_pause() {
-  if (!choices_.empty()) return reporter_.state(PrintState::kWaiting, prompt_, choices_);
+  const bool asks = !question_answered_;
+  if (asks && !choices_.empty()) return reporter_.state(PrintState::kWaiting, prompt_, choices_);
   std::string text = pause_text_;
-  if (!prompt_.empty()) text += (text.empty() ? "" : ": ") + prompt_;
+  if (asks && !prompt_.empty()) text += (text.empty() ? "" : ": ") + prompt_;
   reporter_.state(PrintState::kPaused, text);
 }
 

@@ -149,6 +149,7 @@ class GcodeStream {
   bool busy_seen_ = false;            // the printer says when it is busy
   std::string prompt_;                // what the printer asks its user,
   std::vector<std::string> choices_;  // and the answers it offers
+  bool question_answered_ = false;    // and perhaps not heard yet
   double answered_at_s_ = 0;
   std::string complaint_;             // an error line that neither an ok nor a Resend followed
   std::vector<std::string> unknown_;  // words of commands that the printer does not know

@@ -115,6 +115,38 @@ TEST(AnsweredQuestions, AreShownNoLongerUnlessThePrinterStillWaits) {
   }
 }
 
+TEST_F(Questions, ComeBackInAPauseWhereTheAnswerGotLost) {
+  int step = 0;
+  const auto at = [&](double seconds, int number) {
+    return port.now_s() > seconds && step == number && ++step != 0;
+  };
+  port.on_step = [&](std::size_t) {
+    if (at(kAsks_s, 0)) firmware.run_out();
+    if (at(kAnswered_s, 1)) control.answer(0);
+    if (at(kAnswered_s + 3, 2)) {
+      EXPECT_EQ(last.state, PrintState::kPaused);
+    }
+    if (at(kAnswered_s + 30, 3)) {
+      EXPECT_EQ(last.state, PrintState::kWaiting);
+      EXPECT_EQ(last.text, "Nozzle Parked");
+      EXPECT_EQ(last.choices, std::vector<std::string>{"Continue"});
+      control.answer(0);
+    }
+  };
+  bool lost = false;
+  port.on_send = [&](std::string& bytes) {
+    if (bytes.starts_with("M876") && !std::exchange(lost, true)) bytes.clear();
+  };
+  const auto failure =
+      test::print(port, true, joined(program), control, [&](const PrintReport& report) {
+        last = report;
+        if (report.text == "Paused") control.answer(1);
+      });
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(step, 4);
+  EXPECT_EQ(only(port.executed(), program), program);
+}
+
 TEST_F(Questions, AreNotHiddenByAPause) {
   print(
       [&] {
