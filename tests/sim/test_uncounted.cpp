@@ -288,6 +288,35 @@ TEST(Uncounted, SomebodyMayMoveTheHeadInAPause) {
   EXPECT_EQ(only(port.executed(), program), program);
 }
 
+// Whoever asks for the temperatures in a pause gets an ok that is one too many; what the line
+// before the pause did is long known.
+TEST(Uncounted, WhatComesInAPauseExecutesNoLineAgain) {
+  const std::vector<std::string> program = moves("M83", 60);
+  Marlin firmware(Pace{1, false}, klipper());
+  FaultyPort port(firmware);
+  PrintControl control;
+  int step = 0;
+  port.on_send = [&](std::string& bytes) {
+    port.lose_answers = bytes.find(program[20] + "*") != std::string::npos;
+  };
+  port.on_step = [&](std::size_t) {
+    if (step == 0 && !port.executed().empty() && port.executed().back() == "M114") {
+      firmware.tell_host("paused");  // of its own, with no line of ours
+      step = 1;
+    } else if (step == 1 && port.now_s() > 300) {
+      firmware.receive("M105\n", port.now_s());
+      step = 2;
+    } else if (step == 2 && port.now_s() > 310) {
+      firmware.tell_host("resumed");
+      step = 3;
+    }
+  };
+  const auto failure = print(port, true, text(program), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(step, 3);
+  EXPECT_EQ(only(port.executed(), program), program);
+}
+
 // What does the same when it is executed twice in a row may be.
 std::vector<std::string> without_harmless_repeats(std::vector<std::string> executed) {
   const auto repeats = [](const std::string& a, const std::string& b) {
