@@ -99,9 +99,12 @@ void run_slicer(const fs::path& folder, const Progress& progress) {
                         said.find("nvalid value") != std::string::npos ||
                         said.find("custom G-code") != std::string::npos ||
                         said.find("nozzle diameter") != std::string::npos;
+  const bool on_point = said.find("no extrusions in the first layer") != std::string::npos;
   throw Error(settings ? Fault::kBadProfile : Fault::kBadInput,
               "PrusaSlicer cannot slice the tray: " + said,
-              settings ? "Correct slicer in the profile." : "Repair the model, then try again.");
+              settings   ? "Correct slicer in the profile."
+              : on_point ? "Turn the model so that it stands on a face, then try again."
+                         : "Repair the model, then try again.");
 }
 
 }  // namespace

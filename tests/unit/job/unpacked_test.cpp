@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
 #include <set>
 
 #include "model/printer.h"
@@ -84,6 +85,27 @@ TEST(StandBest, LaysATallBoxDown) {
   const auto as_is = stand_as_is({tall}, profile);
   ASSERT_TRUE(as_is);
   EXPECT_NEAR(extent(*as_is).sizes().z(), 120, 1e-9);
+}
+
+// A steep pyramid needs no support on its point, and slicers refuse what stands so.
+TEST(StandBest, NeverStandsOnAPointWhatIsSliced) {
+  const Profile profile = read_profile("marlin");
+  TriangleSoup soup;
+  soup.points = {{0, 0, 0}, {40, 0, 0}, {40, 40, 0}, {0, 40, 0}, {20, 20, 30}};
+  soup.triangles = {{3, 2, 1}, {3, 1, 0}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  for (const double tip_mm : {30.0, -30.0}) {
+    soup.points[4].z() = tip_mm;
+    if (tip_mm < 0)
+      for (auto& corners : soup.triangles) std::swap(corners[0], corners[1]);
+    const auto best =
+        stand_best({std::make_shared<const Mesh>(closed_mesh(soup))}, profile, Progress());
+    ASSERT_TRUE(best);
+    const Mesh standing = trays_of(*best).front().parts.front();
+    EXPECT_GE(std::count_if(standing.vertices_begin(), standing.vertices_end(),
+                            [&](const auto& v) { return standing.point(v)[2] < 1e-6; }),
+              3)
+        << "a face is on the plate";
+  }
 }
 
 TEST(StandBest, TurnsToFitAndSaysWhenItCannot) {
