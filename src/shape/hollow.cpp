@@ -174,8 +174,7 @@ Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warning
              const Progress& progress) {
   progress.report("hollowing", 0);
   const double wall = settings.wall_mm;
-  DistanceGrid grid(outer, settings.voxel_mm, wall + settings.voxel_mm, 0, NarrowSheets::kCount,
-                    progress);
+  DistanceGrid grid(outer, settings.voxel_mm, wall + settings.voxel_mm, 0, progress);
   progress.report("hollowing", 0.4);
   const SurfaceQuery query(outer);
   const std::vector<TriangleSoup> hollows = boundaries(grid, query, settings, progress);

@@ -16,10 +16,11 @@ import program
 from web_daemon import free_port
 from workshop import SETTINGS, Workshop, gcode
 
-JOBS = int(os.environ.get("PACKMERGER_JOBS", 60))
+JOBS = int(os.environ.get("PACKMERGER_JOBS", 120))
 PRINTERS = 4
+WARM = max(JOBS // 5, 60)  # the first jobs fill what is kept at hand
 ANSWER_S = 0.05  # p99; a test allows tenfold
-MOST_GROWTH_BYTES = 8 << 20  # from a fifth of the jobs to all of them
+MOST_GROWTH_BYTES = 8 << 20  # from then to all of them
 MOST_WAITING = 40
 
 
@@ -78,7 +79,7 @@ handoff_folder = "{folder}"
                 dropped[mark] = gcode(mark, moves=20)
                 shop.drop(shop.printers[number % PRINTERS], f"{mark}.gcode", dropped[mark])
                 shop.wait_for(lambda: number - printed(shop) < MOST_WAITING)
-                if number == JOBS // 5:
+                if number == WARM:
                     early = resident_bytes(shop.daemon.pid), descriptors(shop.daemon.pid)
             shop.wait_for(lambda: printed(shop) >= JOBS)
         finally:
