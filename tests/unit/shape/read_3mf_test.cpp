@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "fixtures/fault_of.h"
 #include "fixtures/models.h"
 #include "shape/read_model.h"
 #include "shape/soup.h"
@@ -19,15 +19,7 @@ using written::three_mf;
 TriangleSoup read(const std::string& bytes) { return read_model_bytes(bytes, "", Progress()).soup; }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    read(bytes);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kBadInput);
-    EXPECT_FALSE(error.hint().empty());
-    return error.what();
-  }
-  ADD_FAILURE() << "was accepted";
-  return "";
+  return fixtures::refusal_of([&] { read(bytes); });
 }
 
 std::string cube_object(const std::string& attributes) {

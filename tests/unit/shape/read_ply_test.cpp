@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "fixtures/fault_of.h"
 #include "shape/read_model.h"
 #include "shape/soup.h"
 #include "unit/shape/written.h"
@@ -20,15 +20,7 @@ TriangleSoup read(const std::string& bytes) {
 }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    read(bytes);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kBadInput);
-    EXPECT_FALSE(error.hint().empty());
-    return error.what();
-  }
-  ADD_FAILURE() << "was accepted";
-  return "";
+  return fixtures::refusal_of([&] { read(bytes); });
 }
 
 const std::string kPoints = "property float x\nproperty float y\nproperty float z\n";

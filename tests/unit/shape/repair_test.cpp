@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "base/error.h"
+#include "fixtures/fault_of.h"
 #include "fixtures/models.h"
 #include "shape/soup.h"
 #include "shape/surface_query.h"
@@ -52,16 +52,10 @@ TriangleSoup exploded(const TriangleSoup& soup) {
 }
 
 std::string refusal(const TriangleSoup& soup) {
-  try {
+  return fixtures::refusal_of([&] {
     Warnings warnings;
     repair(soup, warnings, Progress());
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kBadInput);
-    EXPECT_FALSE(error.hint().empty());
-    return error.what();
-  }
-  ADD_FAILURE() << "was accepted";
-  return "";
+  });
 }
 
 TEST(Repair, CleanInputPassesUnchanged) {
