@@ -7,6 +7,8 @@
 
 #include "gcode/gcode_motion.h"
 
+#include "fixtures/fault_of.h"
+
 namespace packmerger {
 namespace {
 
@@ -24,15 +26,8 @@ std::string last(const std::string& gcode) {
 }
 
 std::string refusal(const std::string& gcode) {
-  try {
-    source(gcode);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.fault(), Fault::kBadInput);
-    EXPECT_FALSE(error.hint().empty());
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown for " << gcode;
-  return "";
+  SCOPED_TRACE(gcode);
+  return fixtures::refusal_of([&] { source(gcode); });
 }
 
 TEST(GpxSource, IsAbsoluteInMillimetresByTool) {
