@@ -3,11 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <atomic>
+#include <csignal>
+#include <cstdlib>
 #include <set>
 
 #include "base/error.h"
@@ -170,21 +171,23 @@ TEST_F(JobFolder, CancellingAtAnyMomentLeavesNothing) {
   }
 }
 
+// The process that is killed begins anew: one that is only forked lacks the threads that draw the
+// pictures, and waits for them for ever.
 TEST_F(JobFolder, BeingKilledLeavesNoJobFolder) {
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const char* const variable = "JOB_FOLDER_OF_THE_KILLED";
+  ::setenv(variable, out_.c_str(), 0);  // the process to be killed is told the folder of this one
+  const auto write_and_be_killed = [&] {
+    fs::remove(folder_.path());
     const Progress progress(
         [](std::string_view, double fraction) {
-          if (fraction > 0.4) kill(getpid(), SIGKILL);
+          if (fraction > 0.4) ::kill(::getpid(), SIGKILL);
         },
         nullptr);
-    write_job_folder(fixtures::sample_job(), {{}}, out_, progress);
-    _exit(0);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
+    write_job_folder(fixtures::sample_job(), {{}}, ::getenv(variable), progress);
+  };
+  EXPECT_EXIT(write_and_be_killed(), testing::KilledBySignal(SIGKILL), "");
+  EXPECT_FALSE(nothing_left()) << "it was killed in the middle";
   EXPECT_FALSE(fs::exists(out_));
   // and what was left behind does not stand in the way of the next try
   write_job_folder(fixtures::sample_job(), {{}}, out_, {});
