@@ -88,7 +88,27 @@ std::vector<std::vector<int>> facets_by_layer(const Mesh& part, double layer_mm,
   return facets;
 }
 
+void add_up(Layer& layer) {
+  for (const Contour& contour : layer.contours) {
+    layer.area_mm2 += contour.area_mm2;
+    layer.perimeter_mm += contour.perimeter_mm;
+  }
+}
+
 }  // namespace
+
+Layer slice_at(const Mesh& part, double z_mm) {
+  std::vector<int> met;
+  for (const auto face : part.faces()) {
+    const auto [a, b, c] = corners(part, face);
+    const auto [low, high] = std::minmax({a.z(), b.z(), c.z()});
+    if (low <= z_mm && z_mm <= high) met.push_back(face.idx());
+  }
+  Layer layer;
+  Cut(part, z_mm, met, layer).run();
+  add_up(layer);
+  return layer;
+}
 
 std::vector<Layer> slice_layers(const std::vector<const Mesh*>& parts, double layer_mm) {
   const int count = layer_count(top_of(parts), layer_mm);
@@ -100,12 +120,7 @@ std::vector<Layer> slice_layers(const std::vector<const Mesh*>& parts, double la
       Cut(*part, z_mm, facets[layer], layers[layer]).run();
     });
   }
-  for (Layer& layer : layers) {
-    for (const Contour& contour : layer.contours) {
-      layer.area_mm2 += contour.area_mm2;
-      layer.perimeter_mm += contour.perimeter_mm;
-    }
-  }
+  for (Layer& layer : layers) add_up(layer);
   return layers;
 }
 

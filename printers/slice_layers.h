@@ -20,6 +20,9 @@ struct Layer {
   double perimeter_mm = 0;  // outlines and holes
 };
 
+// The cut through one closed mesh at one height.
+Layer slice_at(const Mesh& part, double z_mm);
+
 // Layer k is cut at (k + 1/2) · layer_mm above the plate, k from 0 to layer_count(top) − 1.
 // parts: closed meshes in tray coordinates, mm. Overlapping parts are counted twice.
 // Same result on any number of threads.

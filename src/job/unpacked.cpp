@@ -1,7 +1,6 @@
 #include "job/unpacked.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "printers/estimate.h"
+#include "printers/slice_layers.h"
 
 namespace packmerger {
 namespace {
@@ -56,27 +56,6 @@ Pose standing_at(const Mat3& way, const Box3& box, const Vec2& corner) {
   return pose;
 }
 
-// Of the matter half a layer above the plate: what the model would stand on.
-double footprint_mm2(const TriangleSoup& model, const Mat3& way, const Box3& box, double layer_mm) {
-  const double z = box.min().z() + layer_mm / 2;
-  double twice = 0;
-  for (const auto& corners : model.triangles) {
-    std::array<Vec3, 3> at;
-    for (std::size_t k = 0; k < 3; ++k)
-      at[k] = way * model.points[static_cast<std::size_t>(corners[k])];
-    Vec3 down = Vec3::Zero();  // where the triangle's outline goes down through the plane, and up
-    Vec3 up = Vec3::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& a = at[k];
-      const Vec3& b = at[(k + 1) % 3];
-      if ((a.z() < z) != (b.z() < z))
-        (a.z() < z ? up : down) = a + (z - a.z()) / (b.z() - a.z()) * (b - a);
-    }
-    twice += down.x() * up.y() - down.y() * up.x();
-  }
-  return twice / 2;
-}
-
 // The margin for support is given up where a model fills the build volume.
 Room room_for(const std::vector<Box3>& boxes, const Profile& profile) {
   const Room room = room_of(profile);
@@ -116,7 +95,6 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
   const std::vector<Mat3> ways = ways_up();
   // Slicers refuse what stands on a point: the first layer has to hold a line or two.
   const double least_mm2 = profile.is_sliced() ? std::pow(2 * profile.fdm.line_width_mm, 2) : 0;
-  const TriangleSoup soup = to_soup(model);
   using Rank = std::tuple<bool, double, double, std::size_t>;  // on a point, cost, time, index
   std::vector<Rank> ranks(2 * ways.size(), {true, std::numeric_limits<double>::infinity(), 0, 0});
   parallel_tasks(ways.size(), [&](std::size_t i) {
@@ -128,7 +106,8 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
     Tray tray;
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
     const BothTurns both = estimate_both_turns(profile, {tray}, Assembly{}, progress);
-    const bool on_point = footprint_mm2(soup, ways[i], box, profile.layer_mm) < least_mm2;
+    const double footprint_mm2 = slice_at(tray.parts.front(), profile.layer_mm / 2).area_mm2;
+    const bool on_point = footprint_mm2 < least_mm2;
     if (fits_straight) ranks[2 * i] = {on_point, both.straight.cost, both.straight.time_s, 2 * i};
     if (fits_turned) ranks[2 * i + 1] = {on_point, both.turned.cost, both.turned.time_s, 2 * i + 1};
   });

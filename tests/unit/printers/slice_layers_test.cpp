@@ -69,6 +69,18 @@ TEST(SliceLayers, VolumeIsAreaByHeight) {
   }
 }
 
+TEST(SliceLayers, OneHeightIsCutAsItsLayerIs) {
+  Mesh mesh = closed_mesh(fixtures::blob(30, 3));
+  mesh = moved(mesh, Vec3(30, 30, -bounding_box(mesh).min().z()));
+  const std::vector<Layer> layers = cut({mesh}, 0.5);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Layer one = slice_at(mesh, (static_cast<double>(i) + 0.5) * 0.5);
+    EXPECT_EQ(one.contours.size(), layers[i].contours.size());
+    EXPECT_EQ(one.area_mm2, layers[i].area_mm2);
+    EXPECT_EQ(one.perimeter_mm, layers[i].perimeter_mm);
+  }
+}
+
 TEST(SliceLayers, PartsAddUpAndThreadsDoNotMatter) {
   const Mesh a = moved(closed_mesh(fixtures::blob(30, 3)), Vec3(30, 30, 20));
   const Mesh b = moved(closed_mesh(fixtures::torus(15, 5, 40, 20)), Vec3(90, 30, 5));
