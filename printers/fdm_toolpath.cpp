@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "printers/support_volume.h"
-#include "printers/tray_estimate.h"
 
 namespace packmerger {
 namespace {
@@ -125,14 +124,9 @@ double support_time_s(const FdmSettings& settings, double layer_mm, double suppo
          settings.interface_s_per_mm2 * interface_mm2;
 }
 
-TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray, const Progress& progress) {
+void add_tool_path(PrintTerms& terms, const Profile& profile,
+                   const std::vector<const Mesh*>& parts) {
   const FdmSettings& settings = profile.fdm;
-  require_toolpath(profile);
-  const double angle = radians(profile.support_angle_deg);
-  const std::vector<const Mesh*> parts = pointers(tray);
-
-  TrayEstimate result;
-  result.time_s = settings.start_s;
   double path_mm = 0;
   const std::vector<Layer> layers = slice_layers(parts, profile.layer_mm);
   const std::vector<double> exposed =
@@ -140,20 +134,17 @@ TrayEstimate fdm_toolpath_tray(const Profile& profile, const Tray& tray, const P
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const LayerPath path = layer_path(settings, profile.layer_mm, layers[i], exposed[i]);
     path_mm += path.total_mm();
-    result.time_s += layer_time_s(settings, path);
+    terms.path_s += layer_time_s(settings, path);
   }
-  progress.check();
-  const SupportMeasure support = support_measure(parts, angle);
+  const SupportMeasure support = support_measure(parts, radians(profile.support_angle_deg));
   const double bridged = 1 - settings.level_support_fraction;
-  const double held_mm3 = support.volume_mm3 - bridged * support.level_volume_mm3;
   const double held_mm2 = support.interface_mm2 - bridged * support.level_interface_mm2;
-  result.time_s += support_time_s(settings, profile.layer_mm, held_mm3, held_mm2);
-  result.model_mm3 = path_mm * bead(settings, profile.layer_mm).area_mm2;
-  result.model_g = result.model_mm3 / 1000 * profile.material.model_density_g_cm3;
-  result.support_mm3 = support.volume_mm3;
-  result.support_g =
-      held_mm3 * settings.support_fill_fraction / 1000 * profile.material.support_density_g_cm3;
-  return result;
+  const double held_mm3 = support.volume_mm3 - bridged * support.level_volume_mm3;
+  terms.path_s += support_time_s(settings, profile.layer_mm, held_mm3, held_mm2);
+  terms.held_mm3 += held_mm3;
+  terms.layers += static_cast<double>(layers.size());
+  terms.model_mm3 += path_mm * bead(settings, profile.layer_mm).area_mm2;
+  terms.support_mm3 += support.volume_mm3;
 }
 
 }  // namespace packmerger

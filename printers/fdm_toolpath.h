@@ -5,6 +5,7 @@
 
 #include "model/mesh.h"
 #include "model/printer.h"
+#include "printers/print_terms.h"
 #include "printers/slice_layers.h"
 
 namespace packmerger {
@@ -41,5 +42,9 @@ std::vector<double> exposed_areas(const FdmSettings& settings, double layer_mm,
 // Seconds for support of this volume below facets of this area.
 double support_time_s(const FdmSettings& settings, double layer_mm, double support_mm3,
                       double interface_mm2);
+
+// Adds a tray's layers, path, beads and support.
+void add_tool_path(PrintTerms& terms, const Profile& profile,
+                   const std::vector<const Mesh*>& parts);
 
 }  // namespace packmerger

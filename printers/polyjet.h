@@ -1,15 +1,19 @@
 // PolyJet: the head jets every layer in swaths; height costs most, then width, length little.
 #pragma once
 
-#include "model/printer.h"
+#include <vector>
+
+#include "model/mesh.h"
+#include "printers/print_terms.h"
 
 namespace packmerger {
 
-// How often the heads pass over a layer that reaches this far along y: once at least.
-double polyjet_passes(const PolyjetSettings& settings, double y_mm);
+// The passes of so many layers that reach this far along x (the scan axis) and y, support
+// included. An empty layer is still one pass.
+void add_passes(PrintTerms& terms, const PolyjetSettings& settings, double layers, double x_mm,
+                double y_mm);
 
-// Seconds for one layer that reaches this far along x (the scan axis) and y, support included.
-// An empty layer is still one pass.
-double polyjet_layer_s(const PolyjetSettings& settings, double x_mm, double y_mm);
+// Those of a tray's layers, as it stands and turned by a quarter.
+void add_passes(BothTerms& both, const Profile& profile, const std::vector<const Mesh*>& parts);
 
 }  // namespace packmerger

@@ -1,96 +1,112 @@
 #include "printers/print_terms.h"
 
-#include "printers/estimate.h"
-#include "printers/layer_extents.h"
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+#include "printers/fdm_toolpath.h"
 #include "printers/layers.h"
 #include "printers/polyjet.h"
 #include "printers/slice.h"
 #include "printers/support_volume.h"
-#include "printers/tray_estimate.h"
 
 namespace packmerger {
 namespace {
 
-void add_passes(PrintTerms& terms, const Profile& profile, const Tray& tray, double angle) {
-  for (const auto& extent : layer_extents(pointers(tray), profile.layer_mm, angle)) {
-    const Vec2 size = extent.isEmpty() ? Vec2(0, 0) : Vec2(extent.sizes());
-    const double passes = polyjet_passes(profile.polyjet, size.y());
-    terms.passes += passes;
-    terms.passes_mm += passes * size.x();
-  }
+void require_positive(const Profile& profile, double value, const char* key) {
+  if (value > 0) return;
+  throw Error(Fault::kBadProfile,
+              "Profile " + profile.id + ": " + key + " must be positive to estimate a print",
+              std::string("Set ") + key + " in the profile or with --set.");
 }
 
-double other_time_s(const Profile& profile, const std::vector<Tray>& trays,
-                    const Progress& progress) {
-  const Estimate whole = profile.is_sliced() ? estimate_by_slicer(profile, trays, {}, progress)
-                                             : estimate(profile, trays, {}, progress);
-  return whole.time_s - static_cast<double>(trays.size()) * profile.fdm.start_s;
+void require_toolpath(const Profile& profile) {
+  const FdmSettings& settings = profile.fdm;
+  require_positive(profile, bead(settings, profile.layer_mm).spacing_mm, "fdm.line_width_mm");
+  require_positive(profile, settings.speed_mm_s, "fdm.speed_mm_s");
+  require_positive(profile, settings.external_speed_mm_s, "fdm.external_speed_mm_s");
+  require_positive(profile, settings.acceleration_mm_s2, "fdm.acceleration_mm_s2");
+  require_positive(profile, settings.min_speed_mm_s, "fdm.min_speed_mm_s");
+}
+
+BothTerms terms_of(const Profile& profile, const Tray& tray) {
+  std::vector<const Mesh*> parts;
+  for (const Mesh& part : tray.parts) parts.push_back(&part);
+  PrintTerms terms;
+  terms.by = estimator_of(profile);
+  if (terms.by == Estimator::kPath) {
+    add_tool_path(terms, profile, parts);
+    return {terms, terms};
+  }
+  terms.layers = layer_count(top_of(parts), profile.layer_mm);
+  for (const Mesh* part : parts) terms.model_mm3 += volume_mm3(*part);
+  terms.support_mm3 = support_volume_mm3(parts, radians(profile.support_angle_deg));
+  terms.held_mm3 = terms.support_mm3;
+  BothTerms both{terms, terms};
+  if (terms.by == Estimator::kPolyjet) add_passes(both, profile, parts);
+  return both;
 }
 
 }  // namespace
 
-TimeTerms time_terms(const Profile& profile) {
-  if (profile.is_sliced()) return TimeTerms::kOther;
-  if (profile.technology == Technology::kPolyjet) return TimeTerms::kLayersAndPasses;
-  return profile.fdm.time == FdmTime::kDeposition ? TimeTerms::kDeposition : TimeTerms::kOther;
+Estimator estimator_of(const Profile& profile) {
+  if (profile.technology == Technology::kPolyjet) return Estimator::kPolyjet;
+  return profile.fdm.time == FdmTime::kDeposition ? Estimator::kDeposition : Estimator::kPath;
+}
+
+Estimator taught_estimator_of(const Profile& profile) {
+  return profile.is_sliced() ? Estimator::kPath : estimator_of(profile);
+}
+
+PrintTerms& PrintTerms::operator+=(const PrintTerms& other) {
+  trays += other.trays;
+  layers += other.layers;
+  passes += other.passes;
+  passes_mm += other.passes_mm;
+  model_mm3 += other.model_mm3;
+  support_mm3 += other.support_mm3;
+  held_mm3 += other.held_mm3;
+  path_s += other.path_s;
+  return *this;
+}
+
+BothTerms both_terms(const Profile& profile, const std::vector<Tray>& trays,
+                     const Progress& progress) {
+  require_constants(profile);
+  BothTerms sum;
+  sum.straight.by = sum.turned.by = estimator_of(profile);
+  sum.straight.trays = sum.turned.trays = 0;
+  for (const Tray& tray : trays) {
+    progress.check();
+    const BothTerms one = terms_of(profile, tray);
+    sum.straight += one.straight;
+    sum.turned += one.turned;
+  }
+  progress.check();
+  return sum;
 }
 
 PrintTerms print_terms(const Profile& profile, const std::vector<Tray>& trays,
                        const Progress& progress) {
+  if (!profile.is_sliced()) return both_terms(profile, trays, progress).straight;
   PrintTerms terms;
+  terms.by = Estimator::kPath;
   terms.trays = static_cast<int>(trays.size());
-  const TimeTerms kind = time_terms(profile);
-  if (kind == TimeTerms::kOther) {
-    terms.other_s = other_time_s(profile, trays, progress);
-    return terms;
-  }
-  require_positive(profile, profile.layer_mm, "layer_mm");
-  const double angle = radians(profile.support_angle_deg);
-  if (kind == TimeTerms::kLayersAndPasses)
-    require_positive(profile, profile.polyjet.swath_mm, "polyjet.swath_mm");
-  for (const Tray& tray : trays) {
-    progress.check();
-    terms.layers += layer_count(height_mm(tray), profile.layer_mm);
-    if (kind == TimeTerms::kLayersAndPasses) add_passes(terms, profile, tray, angle);
-    terms.model_mm3 += matter_mm3(tray);
-    terms.support_mm3 += support_volume_mm3(pointers(tray), angle);
-  }
+  terms.path_s = estimate_by_slicer(profile, trays, {}, progress).time_s -
+                 static_cast<double>(terms.trays) * profile.fdm.start_s;
   return terms;
 }
 
-double time_of(const Profile& profile, const PrintTerms& terms) {
-  const PolyjetSettings& jet = profile.polyjet;
-  const FdmSettings& fdm = profile.fdm;
-  switch (time_terms(profile)) {
-    case TimeTerms::kLayersAndPasses:
-      return terms.trays * jet.start_s + terms.layers * jet.layer_s + terms.passes * jet.swath_s +
-             terms.passes_mm * jet.per_mm_x_s;
-    case TimeTerms::kDeposition:
-      return deposition_s(fdm, terms);
-    case TimeTerms::kOther:
-      break;
+void require_constants(const Profile& profile) {
+  require_positive(profile, profile.layer_mm, "layer_mm");
+  switch (estimator_of(profile)) {
+    case Estimator::kPolyjet:
+      return require_positive(profile, profile.polyjet.swath_mm, "polyjet.swath_mm");
+    case Estimator::kDeposition:
+      return require_positive(profile, profile.fdm.deposition_cm3_h, "fdm.deposition_cm3_h");
+    case Estimator::kPath:
+      return require_toolpath(profile);
   }
-  return terms.trays * fdm.start_s + terms.other_s;
-}
-
-double deposition_s(const FdmSettings& fdm, const PrintTerms& terms) {
-  return terms.trays * fdm.start_s +
-         (terms.model_mm3 + terms.support_mm3 * fdm.support_fill_fraction) / 1000 /
-             fdm.deposition_cm3_h * 3600 +
-         terms.layers * fdm.layer_s;
-}
-
-double model_g_of(const Profile& profile, const PrintTerms& terms) {
-  const double waste =
-      profile.technology == Technology::kPolyjet ? profile.polyjet.model_waste_factor : 1;
-  return terms.model_mm3 * waste / 1000 * profile.material.model_density_g_cm3;
-}
-
-double support_g_of(const Profile& profile, const PrintTerms& terms) {
-  if (profile.technology == Technology::kPolyjet)
-    return terms.support_mm3 / 1000 * profile.polyjet.support_g_per_cm3;
-  return terms.support_mm3 * profile.fdm.support_fill_fraction / 1000 *
-         profile.material.support_density_g_cm3;
 }
 
 }  // namespace packmerger

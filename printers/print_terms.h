@@ -1,6 +1,6 @@
 // What a print is to the estimators apart from their constants: figures of the trays alone, in
-// which time and material are linear. So a print is measured once, however often constants are
-// tried. docs/ESTIMATES.md has the formulas.
+// which time and material are linear (printers/linear_estimate.h). So a print is measured once,
+// however often constants are tried. docs/ESTIMATES.md has the formulas.
 #pragma once
 
 #include <vector>
@@ -11,35 +11,48 @@
 
 namespace packmerger {
 
+enum class Estimator {
+  kPolyjet,
+  kDeposition,  // FDM by deposition rate
+  kPath         // time is measured along a path: FDM by tool path, or the slicer's program
+};
+// The one that needs no slicer.
+Estimator estimator_of(const Profile& profile);
+// The one whose constants finished prints teach: kPath wherever the profile is sliced.
+Estimator taught_estimator_of(const Profile& profile);
+
 // Sums over the trays.
 struct PrintTerms {
+  Estimator by = Estimator::kPath;
   int trays = 1;
   double layers = 0;
-  double passes = 0;       // PolyJet: swaths over all layers
-  double passes_mm = 0;    // PolyJet: each as long as its layer in x
-  double model_mm3 = 0;    // matter
+  double passes = 0;       // kPolyjet: swaths over all layers
+  double passes_mm = 0;    // kPolyjet: each as long as its layer in x
+  double model_mm3 = 0;    // matter; kPath: the beads
   double support_mm3 = 0;  // V_s
-  double other_s = 0;      // time beside: the slicer's, or that of the tool path without its start
+  double held_mm3 = 0;     // V_s less what a tool path bridges
+  double path_s = 0;       // kPath: time without start_s
+
+  PrintTerms& operator+=(const PrintTerms& other);  // of the same estimator
 };
 
-// Which terms make a profile's time.
-enum class TimeTerms {
-  kLayersAndPasses,  // PolyJet
-  kDeposition,       // FDM by deposition rate
-  kOther             // sliced, or FDM by tool path: start_s for each tray and other_s
+// As the trays stand, and turned by a quarter about the vertical: only kPolyjet tells them apart.
+struct BothTerms {
+  PrintTerms straight;
+  PrintTerms turned;
 };
-TimeTerms time_terms(const Profile& profile);
 
-// Slices the trays where the profile is sliced. Throws what estimate() and slice() throw.
+// By estimator_of. Throws Error{kBadProfile} when a constant that the estimator divides by is not
+// positive, Error{kInterrupted}.
+BothTerms both_terms(const Profile& profile, const std::vector<Tray>& trays,
+                     const Progress& progress);
+
+// By taught_estimator_of: slices the trays where the profile is sliced, and knows no masses then.
+// Throws what both_terms() and slice() throw.
 PrintTerms print_terms(const Profile& profile, const std::vector<Tray>& trays,
                        const Progress& progress);
 
-// What estimate() gives for the same trays, to the rounding, or estimate_by_slicer()'s time.
-// Masses are 0 for kOther: no constant of a profile makes them.
-double time_of(const Profile& profile, const PrintTerms& terms);
-// By deposition rate, also where the profile is sliced.
-double deposition_s(const FdmSettings& fdm, const PrintTerms& terms);
-double model_g_of(const Profile& profile, const PrintTerms& terms);
-double support_g_of(const Profile& profile, const PrintTerms& terms);
+// What both_terms() asks of the profile: "Profile uprint: fdm.deposition_cm3_h must be positive …".
+void require_constants(const Profile& profile);
 
 }  // namespace packmerger

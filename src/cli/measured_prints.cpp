@@ -28,7 +28,7 @@ constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
 void compare_profiles(const StatedPrint& print, const Profile& used, const Profile& profile,
                       Warnings& warnings) {
   if (used.technology != profile.technology || used.is_sliced() != profile.is_sliced() ||
-      time_terms(used) != time_terms(profile))
+      taught_estimator_of(used) != taught_estimator_of(profile))
     refuse(print,
            fmt::format("was prepared for {}, whose time is not made up as that of {}", used.id,
                        profile.id),
@@ -84,7 +84,7 @@ PrintTerms terms_of_folder(const Profile& profile, const StatedPrint& print, War
     refuse(print, "says nothing of how long it was predicted to take", "Leave the print out.");
   PrintTerms terms;
   terms.trays = job.trays;
-  terms.other_s = std::max(0.0, job.predicted_s - job.trays * used.fdm.start_s);
+  terms.path_s = std::max(0.0, job.predicted_s - job.trays * used.fdm.start_s);
   return terms;
 }
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "job/calibration_fit.h"
 #include "model/profile_keys.h"
+#include "printers/linear_estimate.h"
 
 namespace packmerger {
 namespace {
@@ -50,68 +51,64 @@ BoundKey bound_key(Profile& profile, const std::string& name) {
   throw std::logic_error("no key " + name);
 }
 
-FitUnknown unknown(const Profile& profile, const std::string& key,
-                   std::function<double(const PrintTerms&)> slope, bool scales = true) {
-  Profile copy = profile;
-  const BoundKey bound = bound_key(copy, key);
-  return {key, *bound.value, bound.limits.least, bound.limits.most, std::move(slope), scales};
-}
-
 // Rates are fitted as seconds for each cm³, in which time is linear.
 const std::string kRate = "fdm.deposition_cm3_h";
 double rate_from(double s_per_cm3) { return 3600 / s_per_cm3; }
 
-FitUnknown seconds_per_cm3(const Profile& profile) {
-  const double fill = profile.fdm.support_fill_fraction;
-  FitUnknown rate = unknown(profile, kRate, [fill](const PrintTerms& terms) {
-    return (terms.model_mm3 + fill * terms.support_mm3) / 1000;
-  });
-  rate.value = 3600 / rate.value;
-  rate.low = 3600 / rate.high;
-  rate.high = 3600 / kLeastRate_cm3_h;
-  return rate;
+FitUnknown unknown(const Profile& profile, const LinearTerm& term) {
+  Profile copy = profile;
+  const Limits limits = bound_key(copy, term.key).limits;
+  FitUnknown unknown{
+      term.key, term.constant(profile), limits.least, limits.most,
+      [term, profile](const PrintTerms& terms) { return term.amount(profile, terms); }};
+  if (term.key == kRate) {
+    unknown.low = 3600 / limits.most;
+    unknown.high = 3600 / kLeastRate_cm3_h;
+  }
+  if (term.key == std::string("polyjet.layer_s")) unknown.low = kLeastLayer_s;
+  unknown.scales = !std::string_view(term.key).ends_with(".start_s");
+  return unknown;
 }
 
-FitUnknown start_of(const Profile& profile, const std::string& key) {
-  return unknown(
-      profile, key, [](const PrintTerms& terms) { return terms.trays; }, false);
+// The constants that even few prints tell; all others wait for more.
+struct MainConstants {
+  std::vector<std::string_view> keys;
+  const char* words;
+};
+
+MainConstants main_constants(Estimator estimator) {
+  switch (estimator) {
+    case Estimator::kPolyjet:
+      return {{"polyjet.layer_s", "polyjet.swath_s"}, "layers and passes"};
+    case Estimator::kDeposition:
+      return {{kRate, "fdm.layer_s"}, "deposition and layers"};
+    case Estimator::kPath:
+      break;
+  }
+  return {{"fdm.start_s"}, ""};
 }
 
 FitTask time_task(const Profile& profile) {
+  const Estimator estimator = taught_estimator_of(profile);
+  const MainConstants main = main_constants(estimator);
   FitTask task;
-  task.rest = [](const PrintTerms& terms) { return terms.other_s; };
-  const auto layers = [](const PrintTerms& terms) { return terms.layers; };
-  switch (time_terms(profile)) {
-    case TimeTerms::kLayersAndPasses: {
-      FitUnknown layer = unknown(profile, "polyjet.layer_s", layers);
-      layer.low = kLeastLayer_s;
-      task.main = {layer, unknown(profile, "polyjet.swath_s",
-                                  [](const PrintTerms& terms) { return terms.passes; })};
-      task.main_words = "layers and passes";
-      task.extra = {start_of(profile, "polyjet.start_s"),
-                    unknown(profile, "polyjet.per_mm_x_s",
-                            [](const PrintTerms& terms) { return terms.passes_mm; })};
-      break;
-    }
-    case TimeTerms::kDeposition:
-      task.main = {seconds_per_cm3(profile), unknown(profile, "fdm.layer_s", layers)};
-      task.main_words = "deposition and layers";
-      task.extra = {start_of(profile, "fdm.start_s")};
-      break;
-    case TimeTerms::kOther:
-      task.main = {start_of(profile, "fdm.start_s")};
-      break;
+  task.main_words = main.words;
+  task.rest = [](const PrintTerms& terms) { return terms.path_s; };
+  for (const LinearTerm& term : linear_estimate(estimator).time_s) {
+    if (term.key == nullptr) continue;
+    const bool is_main = std::find(main.keys.begin(), main.keys.end(), term.key) != main.keys.end();
+    (is_main ? task.main : task.extra).push_back(unknown(profile, term));
   }
   return task;
 }
 
-FitTask material_task(const Profile& profile, const std::string& key, Predict predict) {
+FitTask material_task(const Profile& profile, const LinearTerm& term, double g_each) {
   FitTask task;
   task.rest = [](const PrintTerms&) { return 0.0; };
-  Profile copy = profile;
-  *bound_key(copy, key).value = 1;
-  task.main = {unknown(profile, key,
-                       [copy, predict](const PrintTerms& terms) { return predict(copy, terms); })};
+  task.main = {unknown(profile, term)};
+  task.main.front().slope = [term, profile, g_each](const PrintTerms& terms) {
+    return g_each * term.amount(profile, terms);
+  };
   return task;
 }
 
@@ -145,16 +142,17 @@ class Fit {
  public:
   Fit(const Profile& profile, const std::vector<CalibrationPrint>& prints) : prints_(prints) {
     result_.profile = profile;
-    if (time_terms(profile) == TimeTerms::kLayersAndPasses) {
-      fit_material(kModel, "polyjet.model_waste_factor");
-      fit_material(kSupport, "polyjet.support_g_per_cm3");
-    } else if (time_terms(profile) == TimeTerms::kDeposition) {
-      fit_material(kSupport, "fdm.support_fill_fraction");
+    const Estimator estimator = taught_estimator_of(profile);
+    const LinearEstimate& linear = linear_estimate(estimator);
+    if (estimator == Estimator::kPolyjet)
+      fit(kModel, material_task(profile, linear.model_mm3.front(),
+                                profile.material.model_density_g_cm3 / 1000));
+    else
       refuse_material(kModel);
-    } else {
-      refuse_material(kModel);
+    if (estimator != Estimator::kPath)
+      fit(kSupport, material_task(profile, linear.support_g.front(), 1));
+    else
       refuse_material(kSupport);
-    }
     fit(kTime, time_task(result_.profile));  // which heeds the support that was fitted
   }
 
@@ -175,10 +173,6 @@ class Fit {
     }
     take_over(result_.profile, task, fit_task(task, rows), static_cast<int>(rows.size()), quantity,
               result_.constants);
-  }
-
-  void fit_material(const Quantity& quantity, const std::string& key) {
-    fit(quantity, material_task(result_.profile, key, quantity.predict));
   }
 
   void refuse_material(const Quantity& quantity) {
@@ -280,10 +274,9 @@ Calibration calibrate(const Profile& profile, const std::vector<CalibrationPrint
                             prints.size(), profile.id),
                 "Tell how long each took (--took 6h23m), or how much support it used.");
   judge(calibration, profile, kTime, prints);
-  const bool has_model = time_terms(profile) == TimeTerms::kLayersAndPasses;
-  const bool has_support = time_terms(profile) != TimeTerms::kOther;
-  if (has_model) judge(calibration, profile, kModel, prints);
-  if (has_support) judge(calibration, profile, kSupport, prints);
+  const Estimator estimator = taught_estimator_of(profile);
+  if (estimator == Estimator::kPolyjet) judge(calibration, profile, kModel, prints);
+  if (estimator != Estimator::kPath) judge(calibration, profile, kSupport, prints);
   warn_of_exact_fits(calibration);
   return calibration;
 }

@@ -1,66 +1,16 @@
-// Drawing without a display or a graphics card (OSMesa): depth maps for measurements and lit
-// colour images for pictures. Nothing else in the project knows OpenGL.
+// Lit colour images without a display or a graphics card (OSMesa). Nothing else in the project
+// knows OpenGL.
 //
-// Same input, same pixels, on any number of threads. Every function throws Error{kInternal} when
-// the library cannot give a drawing surface.
+// Same input, same pixels, on any number of threads. Throws Error{kInternal} when the library
+// cannot give a drawing surface.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "base/no_height.h"
 #include "model/mesh.h"
 
 namespace packmerger {
-
-// ---- depth ---------------------------------------------------------------------------------
-
-// A lattice of vertical rays: ray (i, j) stands at (x_mm + i·step_mm, y_mm + j·step_mm).
-struct RayLattice {
-  double x_mm = 0;
-  double y_mm = 0;
-  double step_mm = 1;
-  int width = 0;   // rays along x, 1..8192
-  int height = 0;  // rays along y, 1..8192
-};
-
-// width × height heights in mm, x fastest: value (i, j) at [j·width + i]; kNothingBelow or
-// kNothingAbove where nothing was hit.
-struct DepthMap {
-  int width = 0;
-  int height = 0;
-  std::vector<float> heights;
-};
-
-struct DepthTriangles {
-  std::vector<Eigen::Vector3f> points;                  // mm
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into points, in any turn
-};
-
-// Draws depth maps. Holds the drawing surfaces it needed so far; make one per thread and keep it.
-// Orthographic projection along z, point samples at the rays, no culling of back faces. A height is
-// exact to about 1e-6 of the triangles' height range plus 1/256 of the step times the facet's
-// slope.
-class DepthRenderer {
- public:
-  DepthRenderer();
-  DepthRenderer(DepthRenderer&&) noexcept;
-  DepthRenderer& operator=(DepthRenderer&&) noexcept;
-  ~DepthRenderer();
-
-  // The highest point of the triangles on every ray, kNothingBelow where there is none.
-  DepthMap from_above(const DepthTriangles& triangles, const RayLattice& rays);
-  // The lowest point, kNothingAbove where there is none.
-  DepthMap from_below(const DepthTriangles& triangles, const RayLattice& rays);
-
- private:
-  struct Surface;
-  std::unique_ptr<Surface> surface_;
-};
-
-// ---- colour --------------------------------------------------------------------------------
 
 struct Colour {
   float red = 0.8F;  // 0..1, as they appear on screen (sRGB)

@@ -13,10 +13,10 @@
 #include "bench/bare_kernel.h"
 #include "bench/bench.h"
 #include "bench/kernels.h"
+#include "fixtures/z_buffer.h"
 #include "pack/depth_map.h"
 #include "pack/fall.h"
 #include "unit/pack/shapes.h"
-#include "unit/pack/z_buffer.h"
 
 namespace packmerger::bench {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bench/order.h"
+#include "fixtures/z_buffer.h"
 #include "model/packing.h"
-#include "offscreen/offscreen.h"
 #include "pack/merge.h"
 
 namespace packmerger::bench {

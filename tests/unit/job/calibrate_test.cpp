@@ -12,6 +12,8 @@
 #include "fixtures/models.h"
 #include "fixtures/profiles.h"
 #include "printers/estimate.h"
+#include "printers/linear_estimate.h"
+#include "printers/packing_cost.h"
 
 namespace packmerger {
 namespace {
@@ -122,6 +124,38 @@ TEST(PrintTerms, GiveWhatTheEstimatorGives) {
     RC_ASSERT(std::abs(time_of(profile, terms) / whole.time_s - 1) < 1e-9);
     RC_ASSERT(std::abs(model_g_of(profile, terms) / whole.model_g - 1) < 1e-9);
     RC_ASSERT(std::abs(support_g_of(profile, terms) - whole.support_g) < 1e-9);
+  }));
+}
+
+// A block fills whole layers, so that the packer's view of a tray is not coarser than the others'.
+TEST(LinearEstimate, EstimatePackerAndCalibrationAgree) {
+  const Profile jet = fixtures::plain_polyjet();
+  const Profile fdm = fixtures::plain_deposition();
+  const std::vector<PrintTerms> by_jet = varied_terms(jet);
+  const std::vector<PrintTerms> by_fdm = varied_terms(fdm);
+  EXPECT_TRUE(rc::check([&] {
+    Profile truth = *rc::gen::arbitrary<bool>() ? any_polyjet() : any_deposition();
+    truth.pack.objective = Objective::kPrinter;
+    truth.cost.model_price_per_g = any_between(0, 1);
+    truth.cost.support_price_per_g = any_between(0, 1);
+    truth.cost.machine_price_per_h = any_between(0, 50);
+    truth.cost.labour_price_per_h = any_between(0, 50);
+    const Block block{
+        Vec3(any_between(1, 90), any_between(1, 90), truth.layer_mm * *rc::gen::inRange(1, 100)),
+        truth.layer_mm * *rc::gen::inRange(1, 10)};
+    const Estimate whole = estimate(truth, {tray_of(block)}, {1, 0}, Progress());
+    const Vec3 box = block.size_mm + Vec3(0, 0, block.lift_mm);
+    const double packed =
+        packing_cost(truth).evaluate({box, whole.support_mm3, block.size_mm.prod(), 1});
+    RC_ASSERT(std::abs(packed - whole.cost) < 1e-6 * (1 + whole.cost));
+
+    // prints of that machine teach a shipped profile to predict it
+    const bool is_jet = truth.technology == Technology::kPolyjet;
+    const Profile taught =
+        calibrate(is_jet ? jet : fdm, prints_by(truth, is_jet ? by_jet : by_fdm)).profile;
+    const Estimate again = estimate(taught, {tray_of(block)}, {1, 0}, Progress());
+    RC_ASSERT(std::abs(again.time_s / whole.time_s - 1) < 1e-4);
+    RC_ASSERT(std::abs(again.support_g / whole.support_g - 1) < 1e-4);
   }));
 }
 
@@ -264,7 +298,7 @@ TEST(Calibrate, ASlicedProfileFitsItsStart) {
   std::vector<CalibrationPrint> prints;
   for (const double sliced_s : {600.0, 1200.0, 1800.0}) {
     PrintTerms terms;
-    terms.other_s = sliced_s;
+    terms.path_s = sliced_s;
     prints.push_back({"sliced", terms, sliced_s + 240, 12.0, {}});
   }
   const Calibration fit = calibrate(profile, prints);
@@ -280,7 +314,7 @@ TEST(Calibrate, AMachineFasterThanItsSlicerKeepsToTheRange) {
   profile.dialect = Dialect::kGcode;
   profile.fdm.start_s = 100;
   PrintTerms terms;
-  terms.other_s = 1000;
+  terms.path_s = 1000;
   const Calibration fit = calibrate(profile, {{"fast", terms, 900.0, {}, {}}});
   EXPECT_EQ(fit.profile.fdm.start_s, 0);
   EXPECT_TRUE(constant(fit, "fdm.start_s").at_limit);
@@ -292,7 +326,8 @@ TEST(Calibrate, LeavingOutByHand) {
   std::vector<CalibrationPrint> prints;
   for (const double grams : {1.0, 2.0, 4.0}) {
     PrintTerms terms;
-    terms.support_mm3 = 1000;
+    terms.by = Estimator::kPolyjet;
+    terms.held_mm3 = 1000;
     prints.push_back({"print", terms, {}, {}, grams});
   }
   const auto fitted = [](double a, double b) {

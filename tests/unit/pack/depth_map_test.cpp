@@ -9,10 +9,10 @@
 
 #include "base/no_height.h"
 #include "base/random.h"
+#include "fixtures/z_buffer.h"
 #include "pack/columns.h"
 #include "pack/rotations.h"
 #include "unit/pack/shapes.h"
-#include "unit/pack/z_buffer.h"
 
 namespace packmerger {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fixtures/z_buffer.h"
 #include "unit/pack/shapes.h"
-#include "unit/pack/z_buffer.h"
 
 namespace packmerger {
 namespace {

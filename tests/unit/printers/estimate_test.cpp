@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "fixtures/profiles.h"
 #include "printers/fdm_toolpath.h"
+#include "printers/linear_estimate.h"
 #include "printers/polyjet.h"
 #include "shapes.h"
 
@@ -33,10 +34,18 @@ Mesh standing_bunny(const TriangleSoup& bunny, double height_mm) {
 }
 
 TEST(Polyjet, LayerByHand) {
-  const PolyjetSettings settings = fixtures::plain_polyjet().polyjet;
-  EXPECT_DOUBLE_EQ(polyjet_layer_s(settings, 20, 10), 1 + 1 * (2 + 2));
-  EXPECT_DOUBLE_EQ(polyjet_layer_s(settings, 20, 10.1), 1 + 2 * (2 + 2));
-  EXPECT_DOUBLE_EQ(polyjet_layer_s(settings, 0, 0), 1 + 1 * 2);  // an empty layer is one pass
+  const Profile profile = fixtures::plain_polyjet();
+  const auto layer_s = [&](double x_mm, double y_mm) {
+    PrintTerms terms;
+    terms.by = Estimator::kPolyjet;
+    terms.trays = 0;
+    terms.layers = 1;
+    add_passes(terms, profile.polyjet, 1, x_mm, y_mm);
+    return time_of(profile, terms);
+  };
+  EXPECT_DOUBLE_EQ(layer_s(20, 10), 1 + 1 * (2 + 2));
+  EXPECT_DOUBLE_EQ(layer_s(20, 10.1), 1 + 2 * (2 + 2));
+  EXPECT_DOUBLE_EQ(layer_s(0, 0), 1 + 1 * 2);  // an empty layer is one pass
 }
 
 TEST(Polyjet, BoxByHand) {
