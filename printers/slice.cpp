@@ -90,8 +90,10 @@ void run_slicer(const fs::path& folder, const Progress& progress) {
   }
   if (result.status.ok() && fs::exists(folder / "tray.gcode")) return;
   std::string said = result.err.empty() ? result.out : result.err;
-  while (!said.empty() && std::isspace(static_cast<unsigned char>(said.back())) != 0)
+  while (!said.empty() &&
+         (std::isspace(static_cast<unsigned char>(said.back())) != 0 || said.back() == '.'))
     said.pop_back();
+  std::replace(said.begin(), said.end(), '\n', ' ');
   if (result.timed_out) said = fmt::format("it took longer than {:.0f} s", kTimeoutS);
   if (said.empty() && result.status.signal != 0)
     said = fmt::format("it was ended by signal {}", result.status.signal);

@@ -45,7 +45,7 @@ void check_way(const std::string& name, const json& way) {
     }
   for (const char* key : {"parts", "trays"})
     if (has(key)) whole_number_in(way, key, 0, kMostPieces);
-  for (const char* key : {"currency", "source"})
+  for (const char* key : {"currency", "source", "reason", "hint"})
     if (has(key)) text_in(way, key);
 }
 

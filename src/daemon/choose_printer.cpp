@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/names.h"
 #include "daemon/child_json.h"
 #include "job/advice.h"
 
@@ -22,7 +23,7 @@ void take_estimates(PrinterOffer& offer, const std::string& estimates, const std
   offer.variant = variant_name(way);
   const std::optional<Estimate>& figures = estimate_of(*ways, way);
   if (!figures) {
-    offer.why_not = "it does not fit, " + offer.variant;
+    offer.why_not = printable(why_not(*ways, way));
     return;
   }
   offer.time_s = figures->time_s;

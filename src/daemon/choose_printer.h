@@ -30,8 +30,8 @@ struct PrinterOffer {
 };
 
 // Takes time, cost, parts and trays from `estimates` (job.json's, as text): of `variant`, where
-// that is "cheapest" of the cheapest of solid, hollow and packed. Where it does not fit, why_not
-// says so.
+// that is "cheapest" of the cheapest of solid, hollow and packed. Where it does not fit
+// or cannot be made, why_not says so.
 void take_estimates(PrinterOffer& offer, const std::string& estimates, const std::string& variant);
 
 // The index of the cheapest, or of the one that is ready soonest; then printers that cannot start

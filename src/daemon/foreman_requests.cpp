@@ -43,9 +43,10 @@ void check_variant(const JobRecord& job, const std::string& variant) {
     throw Error(Fault::kUsage, title(job) + " is a program, printed as it is",
                 "Only models are prepared in another way.");
   const std::optional<Comparison> ways = comparison_in(job.estimates);
-  if (ways && !estimate_of(*ways, *variant_named(variant)))
-    throw Error(Fault::kUsage, title(job) + " does not fit the printer, " + variant,
-                "packmerger jobs show tells which ways fit.");
+  const Variant way = *variant_named(variant);
+  if (ways && !estimate_of(*ways, way))
+    throw Error(Fault::kUsage, title(job) + ": " + printable(why_not(*ways, way)),
+                "packmerger jobs show tells which ways fit and can be made.");
 }
 
 // Nor does what somebody approved count any more. Its figures stay until there are new ones.

@@ -119,11 +119,22 @@ std::optional<Variant> cheapest(const Comparison& comparison) {
   return packs ? Variant::kPacked : piece;
 }
 
+std::string why_not(const Comparison& comparison, Variant variant) {
+  const auto refused = comparison.refused.find(variant_name(variant));
+  if (refused != comparison.refused.end()) return refused->second.what;
+  return "it does not fit, " + std::string(variant_name(variant));
+}
+
 Advice advice(const Comparison& comparison) {
   const std::optional<Variant> best = cheapest(comparison);
-  if (!best) return {best, "It fits this printer in no way; try another profile."};
+  const bool is_refused = !comparison.refused.empty();
+  if (!best)
+    return {best, is_refused ? "It can be made for this printer in no way."
+                             : "It fits this printer in no way; try another profile."};
   const std::optional<Variant> piece = cheapest_piece(comparison);
-  if (!piece) return {best, "Pack it: in one piece it does not fit this printer."};
+  if (!piece)
+    return {best, is_refused ? "Pack it: in one piece it cannot be made for this printer."
+                             : "Pack it: in one piece it does not fit this printer."};
   const std::string name(variant_name(*piece));
   if (!comparison.packed)
     return {best, "It cannot be packed for this printer; print it " + name + ", in one piece."};

@@ -28,6 +28,9 @@ const std::optional<Estimate>& estimate_of(const Comparison& comparison, Variant
 // packing must not take longer either.
 std::optional<Variant> cheapest(const Comparison& comparison);
 
+// Why that way has no figures: "it does not fit, packed", or what keeps it from being made.
+std::string why_not(const Comparison& comparison, Variant variant);
+
 struct Advice {
   std::optional<Variant> variant;  // cheapest()
   std::string text;                // whether packing is worth it, and what to do: a sentence

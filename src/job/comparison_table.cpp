@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/names.h"
 #include "job/advice.h"
 
 namespace packmerger {
@@ -17,7 +18,8 @@ using Cells = std::vector<std::string>;
 // A way of printing, or several whose figures read the same.
 struct Way {
   std::string name;
-  const Estimate* estimate = nullptr;  // nothing where it does not fit
+  const Estimate* estimate = nullptr;  // nothing where it does not fit or cannot be made
+  const Refusal* refusal = nullptr;    // why it cannot
 };
 
 const Estimate* cheapest_unpacked(const Comparison& comparison) {
@@ -79,36 +81,65 @@ bool read_the_same(const Estimate& a, const Estimate& b) {
 
 std::vector<Way> ways_of(const Comparison& comparison) {
   std::vector<Way> ways;
-  const auto add = [&](const std::string& name, const std::optional<Estimate>& estimate) {
+  const auto add = [&](const std::string& name, const char* key,
+                       const std::optional<Estimate>& estimate) {
     const auto same = std::find_if(ways.begin(), ways.end(), [&](const Way& way) {
       return estimate && way.estimate != nullptr && read_the_same(*estimate, *way.estimate);
     });
+    const auto refused = comparison.refused.find(key);
     if (same == ways.end())
-      ways.push_back({name, estimate ? &*estimate : nullptr});
+      ways.push_back({name, estimate ? &*estimate : nullptr,
+                      refused != comparison.refused.end() ? &refused->second : nullptr});
     else
       same->name += " = " + name;
   };
-  add("as the file stands", comparison.as_is);
-  add("solid, best way up", comparison.solid);
-  add("hollow, one piece", comparison.hollow);
-  add("packed", comparison.packed);
+  add("as the file stands", "as_is", comparison.as_is);
+  add("solid, best way up", "solid", comparison.solid);
+  add("hollow, one piece", "hollow", comparison.hollow);
+  add("packed", "packed", comparison.packed);
   return ways;
 }
 
-// Names to the left, cells to the right, columns as wide as they need to be; a row without cells
-// does not fit.
+// A row of one cell says why there are no figures.
+Cells row_of(const Way& way, const Estimate* yardstick) {
+  if (way.estimate != nullptr) return figures_of(*way.estimate, yardstick);
+  return {way.refusal != nullptr ? "cannot be made, see below" : "does not fit"};
+}
+
+// A paragraph for each reason, as several ways often have one.
+std::string why_not(const std::vector<Way>& ways) {
+  std::string text;
+  for (auto way = ways.begin(); way != ways.end(); ++way) {
+    const auto has_reason = [&](const Way& other) {
+      return other.refusal != nullptr && other.refusal->what == way->refusal->what;
+    };
+    if (way->refusal == nullptr || std::any_of(ways.begin(), way, has_reason)) continue;
+    text += way->name;
+    for (auto other = way + 1; other != ways.end(); ++other)
+      if (has_reason(*other)) text += "; " + other->name;
+    text += fmt::format(": {}. {}\n", printable(way->refusal->what), printable(way->refusal->hint));
+  }
+  return text;
+}
+
+// Names to the left, cells to the right, columns as wide as they need to be; a row of one cell is
+// words.
 std::string aligned(const Cells& names, const std::vector<Cells>& rows) {
   std::size_t name_width = 0;
   std::vector<std::size_t> widths(rows.front().size());
   for (const std::string& name : names) name_width = std::max(name_width, name.size());
   for (const Cells& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (std::size_t i = 0; row.size() > 1 && i < row.size(); ++i)
+      widths[i] = std::max(widths[i], row[i].size());
   std::string text;
   for (std::size_t line = 0; line < rows.size(); ++line) {
     text += fmt::format("{:<{}}", names[line], name_width);
-    for (std::size_t i = 0; i < rows[line].size(); ++i)
-      if (widths[i] > 0) text += fmt::format("  {:>{}}", rows[line][i], widths[i]);
-    text += rows[line].empty() ? "  does not fit\n" : "\n";
+    if (rows[line].size() == 1)
+      text += "  " + rows[line].front();
+    else
+      for (std::size_t i = 0; i < rows[line].size(); ++i)
+        if (widths[i] > 0) text += fmt::format("  {:>{}}", rows[line][i], widths[i]);
+    text += "\n";
   }
   return text;
 }
@@ -146,15 +177,17 @@ std::string comparison_table(const Comparison& comparison, const std::string& ti
   std::vector<Cells> figures = {kFigureTitles};
   Cells paid_names = {""};
   std::vector<Cells> paid = {kMoneyTitles};
-  for (const Way& way : ways_of(comparison)) {
+  const std::vector<Way> ways = ways_of(comparison);
+  for (const Way& way : ways) {
     names.push_back(way.name);
-    figures.push_back(way.estimate != nullptr ? figures_of(*way.estimate, yardstick) : Cells());
+    figures.push_back(row_of(way, yardstick));
     if (way.estimate == nullptr) continue;
     paid_names.push_back(way.name);
     paid.push_back(money_of(*way.estimate, yardstick));
   }
   std::string text = title + "\n" + aligned(names, figures);
   if (paid.size() > 1) text += "\n" + aligned(paid_names, paid);
+  if (const std::string reasons = why_not(ways); !reasons.empty()) text += "\n" + reasons + "\n";
   const Advice told = advice(comparison);
   return text + source_of(comparison) + told.text + what_to_do(told, prepared, taking) + "\n";
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "base/parallel.h"
 #include "job/comparison_key.h"
@@ -22,15 +25,36 @@ std::optional<Estimate> estimate_of(const std::optional<Arrangement>& way, const
                              : estimate(profile, trays, assembly_of(*way), progress);
 }
 
-// Takes the other way of standing the same pieces where it is known to cost less, and says whether
-// it did.
-bool prefer_cheaper(std::optional<Arrangement>& way, std::optional<Estimate>& estimate,
-                    const std::optional<Arrangement>& other_way,
-                    const std::optional<Estimate>& other) {
-  if (!estimate || !other || estimate->cost <= other->cost || other_way->trays > way->trays)
+// A way that cannot be made is no end of the comparison where others can. What is said of a bug, of
+// the settings or of a missing program holds for all of them, and is thrown.
+template <typename Make>
+std::optional<Refusal> refusal_of(const Make& make) {
+  try {
+    make();
+    return std::nullopt;
+  } catch (const Error& error) {
+    if (error.fault() != Fault::kBadInput) throw;
+    return Refusal{error.what(), error.hint()};
+  }
+}
+
+struct ComparedWay {
+  std::string name;
+  std::optional<Arrangement>& way;
+  std::optional<Estimate>& estimate;
+};
+
+// Takes the other way of standing the same pieces where it is known to cost less, or this one
+// cannot be made, and says whether it did.
+bool prefer_cheaper(const ComparedWay& one, const std::optional<Arrangement>& other_way,
+                    const std::optional<Estimate>& other, Comparison& comparison) {
+  const bool is_refused = comparison.refused.contains(one.name);
+  if (!other || (!one.estimate && !is_refused)) return false;
+  if (one.estimate && (one.estimate->cost <= other->cost || other_way->trays > one.way->trays))
     return false;
-  way = other_way;
-  estimate = other;
+  one.way = other_way;
+  one.estimate = other;
+  comparison.refused.erase(one.name);
   return true;
 }
 
@@ -42,34 +66,40 @@ bool same_poses(const Arrangement& a, const Arrangement& b) {
 }
 
 // Each way is estimated by itself, several at once: a slicer works on one core most of its time.
-void compare_ways(Plan& plan, const std::optional<Arrangement>& as_is, WholePieces pieces,
+void compare_ways(Plan& plan, std::optional<Arrangement> as_is, WholePieces pieces,
                   const Profile& profile, const Progress& progress) {
-  struct Way {
-    const std::optional<Arrangement>& way;
-    std::optional<Estimate>& estimate;
-  };
   Comparison& comparison = plan.job.estimates;
   const bool stands_best = as_is && plan.solid && same_poses(*as_is, *plan.solid);
-  std::vector<Way> ways{{plan.packed, comparison.packed},
-                        {plan.hollow, comparison.hollow},
-                        {plan.solid, comparison.solid}};
-  if (!stands_best) ways.push_back({as_is, comparison.as_is});
+  const ComparedWay packed{"packed", plan.packed, comparison.packed};
+  const ComparedWay hollow{"hollow", plan.hollow, comparison.hollow};
+  const ComparedWay solid{"solid", plan.solid, comparison.solid};
+  std::vector<ComparedWay> ways{packed, hollow, solid};
+  if (!stands_best) ways.push_back({"as_is", as_is, comparison.as_is});
+  std::vector<std::optional<Refusal>> refusals(ways.size());
   std::atomic<int> done{0};
   parallel_tasks(ways.size(), [&](std::size_t i) {
-    ways[i].estimate = estimate_of(ways[i].way, profile, progress);
+    refusals[i] =
+        refusal_of([&] { ways[i].estimate = estimate_of(ways[i].way, profile, progress); });
     progress.report("estimating", 0.2 + 0.8 * ++done / static_cast<double>(ways.size()));
   });
-  if (stands_best) comparison.as_is = comparison.solid;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (!refusals[i]) continue;
+    comparison.refused[ways[i].name] = *refusals[i];
+    ways[i].way.reset();
+  }
+  if (stands_best) {
+    comparison.as_is = comparison.solid;
+    if (comparison.refused.contains("solid"))
+      comparison.refused["as_is"] = comparison.refused["solid"];
+  }
   // The slicer need not agree with the ranking of the six ways up, of which the file's own is one,
   // nor with the packer.
   ComparedWays& compared = plan.job.compared;
-  compared.solid_as_is = prefer_cheaper(plan.solid, comparison.solid, as_is, comparison.as_is);
+  compared.solid_as_is = prefer_cheaper(solid, as_is, comparison.as_is, comparison);
   if (pieces == WholePieces::kSolid)
-    compared.packed_apart =
-        prefer_cheaper(plan.packed, comparison.packed, plan.solid, comparison.solid);
+    compared.packed_apart = prefer_cheaper(packed, plan.solid, comparison.solid, comparison);
   if (pieces == WholePieces::kHollow)
-    compared.packed_apart =
-        prefer_cheaper(plan.packed, comparison.packed, plan.hollow, comparison.hollow);
+    compared.packed_apart = prefer_cheaper(packed, plan.hollow, comparison.hollow, comparison);
 }
 
 void drop_repeated(Warnings& warnings) {
@@ -110,14 +140,25 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   // them.
   const Progress silent({}, progress.cancelled());
   WholeModels shells;
+  DividedModels models;
+  std::map<std::string, Refusal, std::less<>>& refused = plan.job.estimates.refused;
   Beside beside;
   beside.run([&] { plan.solid = stand_best(surfaces_of(loaded), profile, silent); });
-  const DividedModels models = timed(
-      times, "divide", [&] { return divide_all(loaded, profile, options, warnings, progress); });
+  const auto undivided = timed(times, "divide", [&] {
+    return refusal_of([&] { models = divide_all(loaded, profile, options, warnings, progress); });
+  });
   record(plan.job, loaded, models);
-  shells = shells_of(models, profile, options, warnings, progress);
-  beside.run([&] { plan.hollow = stand_best(shells, profile, silent); });
-  timed(times, "pack", [&] { pack_into(plan, models, profile, options, progress); });
+  const auto not_hollow = undivided ? undivided : refusal_of([&] {
+    shells = shells_of(models, profile, options, warnings, progress);
+  });
+  if (not_hollow)
+    refused["hollow"] = *not_hollow;
+  else
+    beside.run([&] { plan.hollow = stand_best(shells, profile, silent); });
+  if (undivided)
+    refused["packed"] = *undivided;
+  else
+    timed(times, "pack", [&] { pack_into(plan, models, profile, options, progress); });
   timed(times, "estimate", [&] {
     progress.report("estimating", 0);
     beside.wait();

@@ -29,11 +29,12 @@ struct Plan {
   std::optional<Arrangement> packed;
   std::optional<Arrangement> hollow;
   std::optional<Arrangement> solid;
-  std::optional<Error> not_packed;  // why `packed` is empty
+  std::optional<Error> not_packed;  // where it fits no tray
 };
 
-// Throws what reading, repairing and dividing throw. A model that fits no tray in any way is no
-// error here: the ways are empty.
+// Throws what reading and repairing throw. What fits no tray, or cannot be hollowed, divided or
+// sliced, is no error here: that way is empty, and job.estimates.refused tells why it cannot be
+// made.
 Plan plan(const Profile& profile, const PlanOptions& options, const Progress& progress);
 
 }  // namespace packmerger

@@ -1,5 +1,7 @@
 #include "job/prepare.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -15,11 +17,19 @@
 namespace packmerger {
 namespace {
 
+std::string other_way(const Comparison& ways) {
+  const std::optional<Variant> best = cheapest(ways);
+  return best ? fmt::format(" Or use --variant {}.", variant_name(*best)) : "";
+}
+
 Arrangement take(Plan& plan, Variant variant) {
   std::optional<Arrangement>& way = variant == Variant::kSolid    ? plan.solid
                                     : variant == Variant::kHollow ? plan.hollow
                                                                   : plan.packed;
   if (way) return std::move(*way);
+  const Comparison& ways = plan.job.estimates;
+  if (const auto refused = ways.refused.find(variant_name(variant)); refused != ways.refused.end())
+    throw Error(Fault::kBadInput, refused->second.what, refused->second.hint + other_way(ways));
   if (variant == Variant::kPacked && plan.not_packed) throw *plan.not_packed;
   throw Error(Fault::kBadInput, "The model does not fit the printer in one piece",
               "Use --variant packed, which divides it into parts that fit.");

@@ -93,8 +93,8 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
 
 std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Progress& progress) {
   const std::vector<Mat3> ways = ways_up();
-  // Slicers refuse what stands on a point: the first layer has to hold a line or two.
-  const double least_mm2 = profile.is_sliced() ? std::pow(2 * profile.fdm.line_width_mm, 2) : 0;
+  // Slicers refuse what stands on a point or an edge: the first layer has to hold a line or two.
+  const double line_mm = profile.is_sliced() ? profile.fdm.line_width_mm : 0;
   using Rank = std::tuple<bool, double, double, std::size_t>;  // on a point, cost, time, index
   std::vector<Rank> ranks(2 * ways.size(), {true, std::numeric_limits<double>::infinity(), 0, 0});
   parallel_tasks(ways.size(), [&](std::size_t i) {
@@ -106,8 +106,9 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
     Tray tray;
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
     const BothTurns both = estimate_both_turns(profile, {tray}, Assembly{}, progress);
-    const double footprint_mm2 = slice_at(tray.parts.front(), profile.layer_mm / 2).area_mm2;
-    const bool on_point = footprint_mm2 < least_mm2;
+    const Layer footprint = slice_at(tray.parts.front(), profile.layer_mm / 2);
+    const bool on_point = footprint.area_mm2 < std::pow(2 * line_mm, 2) ||
+                          2 * footprint.area_mm2 < line_mm * footprint.perimeter_mm;
     if (fits_straight) ranks[2 * i] = {on_point, both.straight.cost, both.straight.time_s, 2 * i};
     if (fits_turned) ranks[2 * i + 1] = {on_point, both.turned.cost, both.turned.time_s, 2 * i + 1};
   });

@@ -1,6 +1,8 @@
 // What a way of printing costs, as job.json and the comparison show it.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,12 +38,21 @@ struct Estimate {
   EstimateSource source = EstimateSource::kModel;
 };
 
-// Empty where it does not fit the printer.
+// Why a way cannot be made, and what can be done, a sentence each.
+struct Refusal {
+  std::string what;
+  std::string hint;
+};
+
+// Empty where it does not fit the printer, or cannot be made.
 struct Comparison {
   std::optional<Estimate> as_is;   // the model the way its file stands
   std::optional<Estimate> solid;   // the best of six ways up
   std::optional<Estimate> hollow;  // in one piece, the best of six ways up
   std::optional<Estimate> packed;
+  // Of the ways that cannot be made, by their names in job.json; one that is empty and not here
+  // does not fit.
+  std::map<std::string, Refusal, std::less<>> refused;
 };
 
 }  // namespace packmerger

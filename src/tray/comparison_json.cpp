@@ -5,13 +5,18 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json estimate_json(const std::optional<Estimate>& estimate) {
+Json estimate_json(const Comparison& comparison, const char* way,
+                   const std::optional<Estimate>& estimate) {
   if (!estimate) {
     Json none = {{"fits", false}};
     for (const char* key :
          {"time_s", "model_mm3", "model_g", "support_mm3", "support_g", "cost", "material_cost",
           "machine_cost", "hands_cost", "currency", "parts", "trays", "assembly_min", "source"})
       none[key] = nullptr;
+    if (const auto refused = comparison.refused.find(way); refused != comparison.refused.end()) {
+      none["reason"] = refused->second.what;
+      none["hint"] = refused->second.hint;
+    }
     return none;
   }
   return {{"fits", true},
@@ -57,10 +62,10 @@ std::optional<Estimate> estimate_of(const Json& ways, const char* way) {
 }  // namespace
 
 Json comparison_json(const Comparison& comparison) {
-  return {{"as_is", estimate_json(comparison.as_is)},
-          {"solid", estimate_json(comparison.solid)},
-          {"hollow", estimate_json(comparison.hollow)},
-          {"packed", estimate_json(comparison.packed)}};
+  return {{"as_is", estimate_json(comparison, "as_is", comparison.as_is)},
+          {"solid", estimate_json(comparison, "solid", comparison.solid)},
+          {"hollow", estimate_json(comparison, "hollow", comparison.hollow)},
+          {"packed", estimate_json(comparison, "packed", comparison.packed)}};
 }
 
 Json advice_json(std::string_view variant, const std::string& text) {
@@ -68,8 +73,15 @@ Json advice_json(std::string_view variant, const std::string& text) {
 }
 
 Comparison comparison_of(const Json& json) {
-  return {estimate_of(json, "as_is"), estimate_of(json, "solid"), estimate_of(json, "hollow"),
-          estimate_of(json, "packed")};
+  Comparison comparison;
+  comparison.as_is = estimate_of(json, "as_is");
+  comparison.solid = estimate_of(json, "solid");
+  comparison.hollow = estimate_of(json, "hollow");
+  comparison.packed = estimate_of(json, "packed");
+  for (const char* way : {"as_is", "solid", "hollow", "packed"})
+    if (const auto found = json.find(way); found != json.end() && found->contains("reason"))
+      comparison.refused[way] = {found->at("reason"), found->value("hint", "")};
+  return comparison;
 }
 
 }  // namespace packmerger

@@ -10,7 +10,7 @@
 namespace packmerger {
 
 // {"as_is": E, "solid": E, "hollow": E, "packed": E}; where it does not fit, E is
-// {"fits": false} with every other figure null.
+// {"fits": false} with every other figure null, and where it cannot be made "reason" and "hint".
 nlohmann::json comparison_json(const Comparison& comparison);
 
 // The inverse of comparison_json(), also of one that an earlier version wrote, without the three

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { columnsOf } from '../../src/web/job/table';
+import { columnsOf, reasonsOf } from '../../src/web/job/table';
 import type { Estimates } from '../../src/web/daemon/types';
 
 const costs = (way: Record<string, number | null>): Estimates =>
@@ -11,4 +11,10 @@ test('ways that are equal are one column', () => {
   expect(titles({ as_is: 5, solid: 5, hollow: 4, packed: 4 })).toEqual(['As it stands, solid', 'Hollow, packed']);
   expect(titles({ hollow: 4, packed: 4.001 })).toEqual(['Hollow, packed']);
   expect(titles({ as_is: null, solid: null, hollow: 4, packed: 5 })).toEqual(['As it stands', 'Solid', 'Hollow', 'Packed']);
+});
+
+test('why ways cannot be made is told once', () => {
+  const ways = costs({ as_is: null, solid: 5, hollow: null, packed: null });
+  for (const way of ['hollow', 'packed'] as const) Object.assign(ways[way]!, { reason: 'No wall is kept', hint: 'Raise wall_mm.' });
+  expect(reasonsOf(columnsOf(ways))).toEqual([{ titles: 'Hollow, Packed', text: 'No wall is kept. Raise wall_mm.' }]);
 });

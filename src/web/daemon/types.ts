@@ -49,6 +49,8 @@ export interface Estimate {
   trays: number | null;
   assembly_min: number | null;
   source: 'model' | 'slicer' | 'program' | 'moves' | null;
+  reason?: string | null;  // why it cannot be made; left out where it can, or only does not fit
+  hint?: string | null;
 }
 
 export type Way = 'as_is' | 'solid' | 'hollow' | 'packed';

@@ -75,6 +75,17 @@ export function columnsOf(estimates: Estimates): Column[] {
   return columns;
 }
 
+// Why ways cannot be made, each reason once.
+export function reasonsOf(columns: readonly Column[]): { titles: string; text: string }[] {
+  const reasons = new Map<string, string[]>();
+  for (const { title, one } of columns) {
+    if (!one.reason) continue;
+    const text = `${one.reason}. ${one.hint ?? ''}`.trim();
+    reasons.set(text, [...(reasons.get(text) ?? []), title]);
+  }
+  return [...reasons].map(([text, titles]) => ({ titles: titles.join(', '), text }));
+}
+
 // What of a column can be prepared: the way with the least work by hand.
 const variantOf = ({ ways }: Column): Variant | undefined =>
   (['solid', 'hollow', 'packed'] as const).find((way) => ways.includes(way));
@@ -110,7 +121,7 @@ export function EstimateTable({ estimates, prepared, advice, take }: Props) {
               <th key={column.title} scope="col" class={isPrepared(column) ? 'prepared' : ''}>
                 {column.title}
                 {isPrepared(column) ? <span class="tag">prepared</span> : null}
-                {column.one.fits ? null : <span class="tag bad">does not fit</span>}
+                {column.one.fits ? null : <span class="tag bad">{column.one.reason ? 'cannot be made' : 'does not fit'}</span>}
               </th>
             ))}
           </tr>
@@ -145,6 +156,7 @@ export function EstimateTable({ estimates, prepared, advice, take }: Props) {
           </tfoot>
         ) : null}
       </table>
+      {reasonsOf(columns).map(({ titles, text }) => <p key={titles} class="quiet-text">{titles}: {text}</p>)}
     </>
   );
 }

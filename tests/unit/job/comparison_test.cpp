@@ -148,6 +148,26 @@ TEST(Table, ShowsEveryWayAndWhatDoesNotFit) {
   EXPECT_NE(table.find("hollow, one piece   does not fit"), std::string::npos) << table;
 }
 
+TEST(Table, SaysWhyAWayCannotBeMadeOnceForAll) {
+  Comparison ways;
+  ways.solid = costing(10);
+  ways.refused["as_is"] = {"It stands on a point\n\x1b[2J", "Turn it."};
+  ways.refused["hollow"] = ways.refused["packed"] = {"No wall is kept", "Raise wall_mm."};
+  const std::string table = comparison_table(ways, "x");
+  EXPECT_NE(table.find("packed              cannot be made, see below\n"), std::string::npos)
+      << table;
+  EXPECT_NE(table.find("\nas the file stands: It stands on a point??[2J. Turn it.\n"
+                       "hollow, one piece; packed: No wall is kept. Raise wall_mm.\n"),
+            std::string::npos)
+      << table;
+  EXPECT_EQ(comparison_table(comparison_of(comparison_json(ways)), "x"), table);
+  EXPECT_EQ(advice(ways).variant, Variant::kSolid);
+  EXPECT_EQ(why_not(ways, Variant::kPacked), "No wall is kept");
+  ways.solid.reset();
+  EXPECT_EQ(why_not(ways, Variant::kSolid), "it does not fit, solid");
+  EXPECT_NE(advice(ways).text.find("can be made for this printer in no way"), std::string::npos);
+}
+
 TEST(Table, IsTheSameFromJson) {
   Comparison ways;
   ways.solid = costing(10, 7260);

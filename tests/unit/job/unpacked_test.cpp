@@ -108,6 +108,23 @@ TEST(StandBest, NeverStandsOnAPointWhatIsSliced) {
   }
 }
 
+// Of a long edge the first layer has matter enough, but none as wide as a line.
+TEST(StandBest, NeverStandsOnAnEdgeWhatIsSliced) {
+  TriangleSoup soup;
+  for (const double y : {0.0, 60.0})
+    for (const Vec2& at : {Vec2(0, 0), Vec2(8, 30), Vec2(-8, 30)})
+      soup.points.emplace_back(at.x(), y, at.y());
+  soup.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1},
+                    {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
+  const auto best = stand_best({std::make_shared<const Mesh>(closed_mesh(soup))},
+                               read_profile("marlin"), Progress());
+  ASSERT_TRUE(best);
+  const Mesh standing = trays_of(*best).front().parts.front();
+  EXPECT_GE(std::count_if(standing.vertices_begin(), standing.vertices_end(),
+                          [&](const auto& v) { return standing.point(v)[2] < 1e-6; }),
+            3);
+}
+
 TEST(StandBest, TurnsToFitAndSaysWhenItCannot) {
   Profile profile = read_profile("objet30");
   profile.build_mm = {200, 50, 60};
