@@ -14,8 +14,9 @@ import synthetic
 from breaks import BREAKS, change_part, path_of_first, set_at
 from check_job import check
 from checker import figures, meshes, removal, separation, solids, triangles
+from checker.assembly import filled_crevice
 from checker.columns import Grid, intervals
-from checker.outside import outer_sheets
+from checker.outside import Matter, outer_sheets
 from checker.tree import Tree
 from shapes import sphere
 
@@ -142,6 +143,15 @@ class Geometry(unittest.TestCase):
             outer = outer_sheets(np.concatenate([first, within, pin, cavity]), is_open)
             self.assertAlmostEqual(meshes.volume(outer), 1000 + 0.6 * 0.8 * 3 - 27, delta=0.5)
             self.assertAlmostEqual(meshes.areas_and_normals(outer)[0].sum(), 600 + 2 * (0.6 + 0.8) * 3 + 54, delta=0.5)
+
+    def test_only_a_filled_and_narrow_crevice_need_not_be_covered(self):
+        block = synthetic.polycube([0, 10], [0, 10], [0, 10], lambda i, j, k: True)
+        points, normals = np.array([[5.0, 5.1, 7.3]]), np.array([[1.0, 0.0, 0.0]])
+        for width_mm, is_narrow in ((0.01, True), (0.04, True), (0.2, False)):
+            halves = synthetic.polycube([0, 5, 5 + width_mm, 10], [0, 10], [0, 10], lambda i, j, k: i != 1)
+            matter = Matter(halves, is_open=False)
+            self.assertEqual(filled_crevice(matter, block, points, normals, 0.1).tolist(), [is_narrow])
+            self.assertFalse(filled_crevice(matter, block + [0, 0, 8], points, normals, 0.1).any())
 
     def test_topology_of_a_part_is_clean(self):
         corners = synthetic.part_corners(1)

@@ -2,7 +2,8 @@
 
 Every point of the parts' surface is one of four: on a cut (another part's surface faces it there), on the
 model's surface, on a cavity's wall (inside the model, about a wall away from its surface), or wrong. The model's
-surface is that of the matter: sheets within it are nobody's (outside.py).
+surface is that of the matter: sheets within it are nobody's (outside.py), nor need a crevice narrower than half the
+tolerance stay open.
 """
 import hashlib
 import pathlib
@@ -20,6 +21,7 @@ CUT_TOLERANCE_MM = 0.01
 OVERLAP_TOLERANCE_MM = 0.05
 SHELL_TOLERANCE = 1e-3
 GLUE_TOLERANCE = 0.02
+CREVICE_SHARES = (0.05, 0.15, 0.5)  # of the tolerance: where a crevice's other side is looked for
 LEAST_GLUE_MM2 = 1.0      # neighbours that touch less need not be listed
 CAVITY_FRACTION = 0.4     # of wall_mm: a cavity's wall is at least so deep below the model's surface
 SOLID_FRACTION = 0.995    # parts that hold this much of the model's volume have no cavity
@@ -180,15 +182,28 @@ def _check_surface(job, assembled, model, number, report):
                  first_few(wrong, 3) or f"{furthest:.5f} mm at most, {tolerance} mm allowed ({counts} points)")
     if kinds["cavity"]:
         report.note(f"input {number}: cavity walls below the model's surface", f"{shallowest:.3f} mm least, wall_mm {wall}")
-    _check_coverage(assembled, outside, tolerance, number, report)
+    _check_coverage(assembled, outside, matter, tolerance, number, report)
 
 
-def _check_coverage(assembled, outside, tolerance, number, report):
+def filled_crevice(matter, parts, points, normals, tolerance):
+    """Which points lie in the parts' matter, and face more of the model's less than half the tolerance away."""
+    faces = np.any([matter.holds(points + share * tolerance * normals) for share in CREVICE_SHARES], axis=0)
+    return faces & Matter(parts, is_open=False).holds(points)
+
+
+def _check_coverage(assembled, outside, matter, tolerance, number, report):
     """From the model to the parts."""
-    points, _ = sample_surface(outside)
-    distance, _ = Tree(assembled.all_corners()).closest(points)
+    points, rows = sample_surface(outside)
+    parts = assembled.all_corners()
+    distance, _ = Tree(parts).closest(points)
+    off = np.flatnonzero(distance > tolerance)
+    filled = off
+    if len(off):
+        normals = meshes.areas_and_normals(outside[rows[off]])[1]
+        filled = off[filled_crevice(matter, parts, points[off], normals, tolerance)]
+        distance[filled] = 0
     bad = np.flatnonzero(distance > tolerance)
-    figures = f"{distance.max(initial=0):.5f} mm at most, {len(points)} points"
+    figures = f"{distance.max(initial=0):.5f} mm at most, {len(points)} points, {len(filled)} in filled crevices"
     if len(bad):
         worst = distance.argmax()
         figures = f"{len(bad)} of {len(points)} points off, {distance[worst]:.4f} mm at {np.round(points[worst], 2).tolist()}"

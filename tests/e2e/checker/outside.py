@@ -9,6 +9,7 @@ from .tree import Tree
 PROBE_MM = 1e-3      # how far outside a sheet it is asked whether there is matter
 COARSEST_MM = 2.0    # sheets that cross others are cut at least so small
 FINEST_MM = 0.05     # and no smaller where they enter matter
+ROUNDING_MM = 1e-9   # of the plane a triangle lies in
 # A triangle's probes, by its corners' weights: near the corners, near the middles of the edges, the middle; off any
 # symmetry, so that no line through them meets an edge.
 _PROBES = np.array([[.9807, .0112, .0081], [.0093, .9804, .0103], [.0117, .0096, .9787], [.4923, .4871, .0206],
@@ -42,6 +43,8 @@ def crossing(corners):
     for a, b in tree.near_pairs(tree, overlap):
         apart = (a < b) & ~(named[a][:, :, None] == named[b][:, None, :]).any(axis=(1, 2))
         a, b = a[apart], b[apart]
+        near = exact.plane_gap(tree.corners[a], tree.corners[b]) <= ROUNDING_MM
+        a, b = a[near], b[near]
         meet = exact.triangle_triangle(tree.corners[a], tree.corners[b]) <= 0
         found[tree.index[a[meet]]] = found[tree.index[b[meet]]] = True
     return found

@@ -63,13 +63,14 @@ class Tree:
             done = ~open_a & ~open_b
             yield from self._leaf_pairs(other, a[done], b[done], keep)
             a, b, open_a, open_b = a[~done], b[~done], open_a[~done], open_b[~done]
+            fronts = []
             for da in (1, 2):
                 for db in (1, 2):
                     take = (open_a | (da == 1)) & (open_b | (db == 1))
-                    next_a = np.where(open_a, 2 * a + da, a)[take]
-                    next_b = np.where(open_b, 2 * b + db, b)[take]
-                    for at in range(0, len(next_a), _FRONT):
-                        stack.append((next_a[at:at + _FRONT], next_b[at:at + _FRONT]))
+                    fronts.append((np.where(open_a, 2 * a + da, a)[take], np.where(open_b, 2 * b + db, b)[take]))
+            next_a, next_b = (np.concatenate(side) for side in zip(*fronts))
+            for at in range(0, len(next_a), _FRONT):
+                stack.append((next_a[at:at + _FRONT], next_b[at:at + _FRONT]))
 
     def _leaf_pairs(self, other, a, b, keep):
         a, b = a - self.first_leaf, b - other.first_leaf
