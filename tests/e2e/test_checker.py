@@ -16,7 +16,7 @@ from check_job import check
 from checker import figures, meshes, removal, separation, solids, triangles
 from checker.assembly import filled_crevice
 from checker.columns import Grid, intervals
-from checker.outside import Matter, outer_sheets
+from checker.outside import Matter, bounds_by_angle, outer_sheets, winding_by_angle
 from checker.tree import Tree
 from shapes import sphere
 
@@ -143,6 +143,15 @@ class Geometry(unittest.TestCase):
             outer = outer_sheets(np.concatenate([first, within, pin, cavity]), is_open)
             self.assertAlmostEqual(meshes.volume(outer), 1000 + 0.6 * 0.8 * 3 - 27, delta=0.5)
             self.assertAlmostEqual(meshes.areas_and_normals(outer)[0].sum(), 600 + 2 * (0.6 + 0.8) * 3 + 54, delta=0.5)
+
+    def test_what_closes_a_hole_bounds_matter(self):
+        box = synthetic.polycube([0, 10], [0, 10], [0, 10], lambda i, j, k: True)
+        bowl = box[box[:, :, 2].min(axis=1) < 9]  # without its lid
+        points = np.array([[5.1, 5.2, 10], [5.1, 5.2, 7], [5.1, 5.2, 14], [0, 5, 5]])
+        up = np.array([[0, 0, 1.0], [0, 0, 1.0], [0, 0, 1.0], [-1, 0, 0]])
+        self.assertEqual(bounds_by_angle(points, up, bowl).tolist(), [True, False, False, True])
+        self.assertEqual(bounds_by_angle(points[3:], -up[3:], bowl).tolist(), [False])
+        self.assertAlmostEqual(winding_by_angle(points[1:2], box)[0], 1, places=6)
 
     def test_only_a_filled_and_narrow_crevice_need_not_be_covered(self):
         block = synthetic.polycube([0, 10], [0, 10], [0, 10], lambda i, j, k: True)

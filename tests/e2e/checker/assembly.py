@@ -12,7 +12,7 @@ import numpy as np
 
 from . import meshes
 from .columns import Grid, intervals
-from .outside import Matter, outer_sheets
+from .outside import Matter, bounds_by_angle, outer_sheets
 from .report import first_few
 from .tree import Tree
 
@@ -27,6 +27,7 @@ CAVITY_FRACTION = 0.4     # of wall_mm: a cavity's wall is at least so deep belo
 SOLID_FRACTION = 0.995    # parts that hold this much of the model's volume have no cavity
 SAMPLE_MM2 = 0.5          # a sample for so much area, at least one a triangle
 MOST_SAMPLES = 400_000
+MOST_DOUBTFUL = 2000      # points of a model with holes whose place is found the slow way; more are wrong
 
 
 def sample_surface(corners):
@@ -166,6 +167,8 @@ def _check_surface(job, assembled, model, number, report):
         inside[off] = matter.holds(points[off])
         cavity = off & inside & (distance >= CAVITY_FRACTION * wall) & hollow
         hole = off & ~cavity & _nearest_is(rim, points, distance)
+        doubtful = np.flatnonzero(off & ~cavity & ~hole)[:MOST_DOUBTFUL if rim else 0]
+        hole[doubtful] = bounds_by_angle(points[doubtful], normals[~cut][doubtful], model)
         bad = off & ~cavity & ~hole
         kinds["cut"] += int(cut.sum())
         kinds["model"] += int((~off).sum())

@@ -9,6 +9,7 @@ from .tree import Tree
 PROBE_MM = 1e-3      # how far outside a sheet it is asked whether there is matter
 COARSEST_MM = 2.0    # sheets that cross others are cut at least so small
 FINEST_MM = 0.05     # and no smaller where they enter matter
+BESIDE_MM = 0.1      # on either side of what closes a hole it is asked whether there is matter
 ROUNDING_MM = 1e-9   # of the plane a triangle lies in
 # A triangle's probes, by its corners' weights: near the corners, near the middles of the edges, the middle; off any
 # symmetry, so that no line through them meets an edge.
@@ -29,6 +30,25 @@ class Matter:
         votes = sum((tree.winding(np.roll(points, shift, axis=1) * sign) > 0).astype(int)
                     for shift, sign, tree in self.views)
         return votes * 3 >= len(self.views) * 2
+
+
+def winding_by_angle(points, corners):
+    """The same for a surface with holes, which need no line to miss them: a fraction, about 1/2 across a hole."""
+    found = np.zeros(len(points))
+    for k, point in enumerate(points):
+        arms = corners - point
+        a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]
+        la, lb, lc = np.linalg.norm(arms, axis=2).T
+        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+        dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
+        found[k] = np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb).sum() / (2 * np.pi)
+    return found
+
+
+def bounds_by_angle(points, normals, corners):
+    """Whether the matter of a surface with holes, where it goes round more than half, ends at the points."""
+    by = BESIDE_MM * normals
+    return (winding_by_angle(points - by, corners) > 0.5) & (winding_by_angle(points + by, corners) < 0.5)
 
 
 def crossing(corners):
