@@ -166,14 +166,26 @@ class Smoother {
            (new_faces_are_near(point, place.face) && old_faces_are_near(point));
   }
 
-  // Both surfaces lie in one thin slab: the cheap test that nearly always does.
+  // Both surfaces lie in one thin slab and nowhere turn back, as a fin's tip does: the cheap test
+  // that nearly always does.
   bool lies_flat(int point, const SurfaceWalk::Place& place) const {
     const Vec3 normal = walk_.normal(place.face);
     const auto is_in_slab = [&](const Vec3& p) {
       return std::abs(normal.dot(p - place.point)) <= kTolerance_mm / 2;
     };
-    return is_in_slab(walk_.home(point)) && std::all_of(ring_.begin(), ring_.end(), [&](int other) {
-             return is_in_slab(mesh_.points[other]) && is_in_slab(walk_.home(other));
+    const auto looks_up = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      return (b - a).cross(c - a).dot(normal) > 0;
+    };
+    const auto faces = walk_.faces_at(point);
+    return is_in_slab(walk_.home(point)) &&
+           std::all_of(ring_.begin(), ring_.end(),
+                       [&](int other) {
+                         return is_in_slab(mesh_.points[other]) && is_in_slab(walk_.home(other));
+                       }) &&
+           std::all_of(faces.begin(), faces.end(), [&](int face) {
+             const auto [a, b, c] = walk_.surface().faces[face].corners;
+             return looks_up(mesh_.points[a], mesh_.points[b], mesh_.points[c]) &&
+                    looks_up(walk_.home(a), walk_.home(b), walk_.home(c));
            });
   }
 

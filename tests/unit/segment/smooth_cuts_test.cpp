@@ -97,6 +97,24 @@ TEST(SmoothCuts, KeepsASphereRoundWithinATenth) {
     }
 }
 
+// Seen from its side a fin is flat, yet its tip may not go: a cavity has no sharp edges to follow.
+TEST(SmoothCuts, KeepsTheTipOfAThinFin) {
+  TetMesh mesh;
+  mesh.points = {{0, -1, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0.01}, {2, 0, 0}};
+  mesh.tetrahedra = {{0, 4, 1, 3}, {1, 4, 2, 3}};
+  for (const Vec3& far : {Vec3(50, 0, 0), Vec3(60, 0, 0), Vec3(50, 10, 0), Vec3(50, 0, 10)})
+    mesh.points.push_back(far);
+  mesh.tetrahedra.push_back({5, 6, 7, 8});
+  for (int t = 0; t < mesh.count(); ++t) ASSERT_GT(mesh.volume_mm3(t), 0) << t;
+  mesh.sides.assign(mesh.tetrahedra.size(),
+                    {FaceSide::kCavity, FaceSide::kCavity, FaceSide::kCavity, FaceSide::kCavity});
+  link_neighbours(mesh);
+  Segments segments{{0, 1, 2}, 3};
+  smooth_cuts(mesh, segments, ShapeSettings(), Progress());
+  ASSERT_EQ(segments.of_tetrahedron, (std::vector<int>{0, 1, 2}));
+  EXPECT_NEAR(mesh.points[4].x(), 2, 0.1);
+}
+
 TEST(SmoothCuts, HasNothingToDoWithoutCuts) {
   TetMesh mesh = fixtures::cube_shell(6, 1, 60);
   const auto before = mesh.points;
