@@ -144,7 +144,7 @@ struct DistanceGrid::Grid {
 };
 
 DistanceGrid::DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, double outside_mm,
-                           const Progress& progress)
+                           NarrowSheets sheets, const Progress& progress)
     : grid_(std::make_unique<Grid>()) {
   const double layers = (inside_mm + outside_mm) / voxel_mm + 4;
   const double voxels = area_mm2(mesh) / (voxel_mm * voxel_mm) * layers;
@@ -155,12 +155,14 @@ DistanceGrid::DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, 
   grid_->origin = bounding_box(mesh).min() - Vec3::Constant(kShift * voxel_mm);
   const float inside = static_cast<float>(inside_mm / voxel_mm + 2);
   const float outside = static_cast<float>(outside_mm / voxel_mm + 2);
+  const int flags =
+      sheets == NarrowSheets::kCount ? openvdb::tools::DISABLE_INTERSECTING_VOXEL_REMOVAL : 0;
   Interrupter interrupter(progress);
   for (Layer& layer : layers_of(mesh)) {
     const Adapter adapter(std::move(layer.soup), grid_->origin, voxel_mm);
     auto values = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
         interrupter, adapter, *openvdb::math::Transform::createLinearTransform(1.0),
-        layer.is_matter ? outside : inside, layer.is_matter ? inside : outside);
+        layer.is_matter ? outside : inside, layer.is_matter ? inside : outside, flags);
     progress.check();
     if (grid_->values)
       lay(*grid_->values, *values, layer.is_matter);

@@ -10,6 +10,13 @@
 
 namespace packmerger {
 
+// What becomes of sheets between which and the outside no voxel lies, such as the walls of a
+// crevice.
+enum class NarrowSheets {
+  kCount,  // the surface does not cross itself: they bound matter as others do
+  kDrop,   // they may be inner ones, of bodies that overlap: no distance is measured to them
+};
+
 class DistanceGrid {
  public:
   // Exact near the surface: from inside_mm below it to outside_mm above. What no way from outside
@@ -18,7 +25,7 @@ class DistanceGrid {
   // mesh: closed; it may intersect itself.
   // Throws Error{kBadInput} when about more than 200 million voxels are needed.
   DistanceGrid(const Mesh& mesh, double voxel_mm, double inside_mm, double outside_mm,
-               const Progress& progress);
+               NarrowSheets sheets, const Progress& progress);
   DistanceGrid(DistanceGrid&&) noexcept;
   ~DistanceGrid();
 

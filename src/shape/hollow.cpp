@@ -174,7 +174,8 @@ Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warning
              const Progress& progress) {
   progress.report("hollowing", 0);
   const double wall = settings.wall_mm;
-  DistanceGrid grid(outer, settings.voxel_mm, wall + settings.voxel_mm, 0, progress);
+  DistanceGrid grid(outer, settings.voxel_mm, wall + settings.voxel_mm, 0, NarrowSheets::kCount,
+                    progress);
   progress.report("hollowing", 0.4);
   const SurfaceQuery query(outer);
   const std::vector<TriangleSoup> hollows = boundaries(grid, query, settings, progress);

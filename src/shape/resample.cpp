@@ -177,7 +177,7 @@ std::optional<Resampled> from_grid(const Mesh& mesh, Measure& measure, const Pro
     progress.report("re-sampling", static_cast<double>(round + 1) / (kVoxels.size() + 1));
     const double voxel = kVoxels[round] * measure.tolerance_mm;
     if (area / (voxel * voxel) * (2 * kBand + 4) > kMaxVoxels) break;
-    DistanceGrid grid(mesh, voxel, kBand * voxel, kBand * voxel, progress);
+    DistanceGrid grid(mesh, voxel, kBand * voxel, kBand * voxel, NarrowSheets::kDrop, progress);
     const auto level = grid.level(0, progress);
     const auto fine = level ? without_grains(*level, voxel) : std::nullopt;
     if (!fine) continue;

@@ -1,6 +1,7 @@
 #include "shape/hollow.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -57,6 +58,37 @@ TEST(Hollow, CubeHasTheWallItIsTold) {
   EXPECT_LT(shell.cavities[0].n_faces(), 2000u) << "flat faces need few triangles";
   EXPECT_TRUE(warned(warnings, "sealed_cavity"));
   EXPECT_FALSE(warned(warnings, "thin_features"));
+}
+
+// A box of 40 mm with a slit from above, too narrow for any voxel.
+TriangleSoup slit_box() {
+  const std::array<std::array<double, 2>, 8> outline = {
+      {{0, 0}, {40, 0}, {40, 40}, {20.02, 40}, {20.02, 20}, {19.98, 20}, {19.98, 40}, {0, 40}}};
+  const std::array<std::array<int, 3>, 6> cap = {
+      {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {0, 4, 5}, {0, 5, 7}, {5, 6, 7}}};
+  TriangleSoup soup;
+  for (const double z : {0.0, 40.0})
+    for (const auto& [x, y] : outline) soup.points.emplace_back(x, y, z);
+  for (const auto& [a, b, c] : cap) {
+    soup.triangles.push_back({c, b, a});
+    soup.triangles.push_back({a + 8, b + 8, c + 8});
+  }
+  for (int i = 0; i < 8; ++i) {
+    const int next = (i + 1) % 8;
+    soup.triangles.push_back({i, next, next + 8});
+    soup.triangles.push_back({i, next + 8, i + 8});
+  }
+  return soup;
+}
+
+TEST(Hollow, CrevicesNarrowerThanAVoxelHaveTheirWall) {
+  Warnings warnings;
+  const Shell shell = hollowed(slit_box(), warnings);
+  expect_good_cavities(shell, 3);
+  double space = 0;
+  for (const Mesh& cavity : shell.cavities) space -= volume_mm3(cavity);
+  const double expected = 34 * 34 * 34 - 6.04 * 20 * 34;
+  EXPECT_NEAR(space, expected, 0.03 * expected);
 }
 
 TEST(Hollow, SphereAndTorus) {
