@@ -77,22 +77,26 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
   }
 }
 
-// One that checks sums and counts nothing asks for what came garbled, and can only mean the line
-// given last. Which kind it is, the answer to the probe decides.
+// One that checks sums and counts nothing asks for what came garbled, by that line's own number.
+// Which kind it is, the answer to the probe decides.
 void GcodeStream::handle_resend(std::size_t asked) {
   tally_.count_refusal();
   if (line_count_ == LineCount::kUnknown) {
     in_doubt_ = true;
     // The line that it lacks is a late one; one that counts nothing names the probe's own number.
-    if (probes_ && asked > 0 && asked <= last_ + 1 && asked + kSlack >= last_)
+    if (probes_ && asked > 0 && asked <= last_ + 1 && asked + kSlack >= open_)
       line_count_ = LineCount::kKept;
   }
+  if (line_count_ == LineCount::kIgnored) {
+    if (last_ > open_ && asked != open_) return forget_question();
+    asked = open_;
+  }
+  const std::size_t given = line_count_ == LineCount::kKept ? highest_ : last_;
   std::size_t next = asked;
-  if (line_count_ == LineCount::kIgnored) asked = next = last_;
-  if (asked == 0 || asked > last_ + 1) next = last_;  // garbled on its way
+  if (asked == 0 || asked > given + 1) next = last_;  // garbled on its way
   // A printer that was reset asks for line 1; in the first lines that would seem to be near. Line 1
   // itself may have lost its number on the way, and was answered as a line without one.
-  if (asked > 0 && (asked + kSlack < last_ || (asked == 1 && acknowledged_ > 1))) {
+  if (asked > 0 && (asked + kSlack < open_ || (asked == 1 && acknowledged_ > 1))) {
     if (asked == far_back_)
       fail("The printer has lost its place (it asks for line " + std::to_string(asked) +
                " after line " + std::to_string(last_) + "): it was probably reset",
@@ -108,6 +112,16 @@ void GcodeStream::handle_resend(std::size_t asked) {
         "The printer asked ten times for line " + std::to_string(next) + " (" + command(next) + ")",
         "Use a shorter or better shielded cable, and check that link.baud fits the printer.");
   resend_ = Resend{next, channel_.now_s() + kResendWait_s};
+}
+
+// It came garbled to a printer that counts nothing, which is no loss: the ok behind the request is
+// all the answer that it gets. A line before it that lacks its own is doubtful.
+void GcodeStream::forget_question() {
+  m105_behind_ = false;
+  for (Given& given : unanswered_) {
+    if (given.number > 0) in_doubt_ = true;
+    if (given.number == 0 && std::exchange(given.asks_temperatures, false)) return;
+  }
 }
 
 // Never by what comes unasked: reports of positions or temperatures go on for ever when the answer
@@ -138,10 +152,10 @@ void GcodeStream::watch_silence() {
   const double now = channel_.now_s();
   if (stands_still() && !between_) alive_at_s_ = now;  // for as long as the machine likes
   const bool may_be_long =
-      is_long(command(last_)) && !busy_seen_ && !cancelling_ && complaint_.empty();
+      is_long(command(open_)) && !busy_seen_ && !cancelling_ && complaint_.empty();
   const double limit = std::max(options_.timeout_s * (may_be_long ? kLongFactor : 1.0),
                                 kBusiesMissed * busy_interval_s_) +
-                       (may_be_long ? dwell_s(command(last_)) : 0);
+                       (may_be_long ? dwell_s(command(open_)) : 0);
   if (now - alive_at_s_ >= limit) fail_in_silence();
   double patience = limit / kTriesPerTimeout;
   if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
@@ -166,19 +180,18 @@ void GcodeStream::recover() {
 // The answer to M105 comes behind all others: what was owed before it and did not come got lost,
 // and an ok that comes before it, though nothing else is owed, is one too many.
 void GcodeStream::ask_for_proof() {
-  send_raw("M105", true);
+  ask("M105");
   m105_behind_ = true;
   asked_behind_ = last_;
 }
 
 bool GcodeStream::wants_proof() const {
   if (asked_behind_ == last_) return false;
-  const std::size_t behind_program = commands_.size() + 1;
-  if (last_ >= behind_program)
+  if (end_ > 0 && open_ >= end_)
     // once the position did not come, or where it comes unasked
-    return last_ > behind_program + 1 || positions_unasked_;
+    return position_tries_ > 1 || positions_unasked_;
   const bool doubted = last_ < doubted_until_;
-  return !blocks(command(last_)) &&
+  return !blocks(command(open_)) &&
          last_ >= proven_ + (doubted ? kLinesPerProofInDoubt : kLinesPerProof);
 }
 

@@ -44,13 +44,14 @@ void GcodeStream::begin_cancel() {
   cancelled_at_s_ = channel_.now_s();
   answer_at_s_ = cancelled_at_s_ + kAnswerEvery_s;
   reporter_.state(PrintState::kCancelling);
-  send_raw("M410");
-  send_raw("M108");
+  send("M410");
+  send("M108");
   const std::size_t first =
       std::min(highest_ > kSlack ? highest_ - kSlack : 1, commands_.size() + 1);
   commands_.shorten(highest_);
   for (std::size_t i = first; i <= commands_.size(); ++i) commands_.replace(i - 1, "M105");
-  while (commands_.size() < highest_) commands_.append("M105");  // those behind the program
+  end_ = 0;
+  position_tries_ = 0;
   for (std::string& line : gcode_lines(options_.safe_gcode)) commands_.append(std::move(line));
   position_seen_ = false;
 }
@@ -78,8 +79,8 @@ void GcodeStream::press_on_with_cancel() {
   answer_at_s_ = now + answer_every_s_;
   answer_every_s_ *= 2;
   const std::size_t button = button_that_ends(choices_);
-  send_raw("M108");
-  if (abilities_.emergency_parser) send_raw("M876 S" + std::to_string(button));
+  send("M108");
+  if (abilities_.emergency_parser) send("M876 S" + std::to_string(button));
   std::string text = "answering the printer, which waits for its user";
   if (!prompt_.empty()) text += ": " + prompt_;
   if (button < choices_.size()) text += " (" + choices_[button] + ")";

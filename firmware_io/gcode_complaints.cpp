@@ -16,7 +16,7 @@ void GcodeStream::fail_in_silence() const {
   if (!complaint_.empty())
     fail("The printer said \"" + complaint_ + "\" and has not answered since",
          "Find out why, switch the printer off and on, then print the job again.");
-  fail("The printer has not answered line " + std::to_string(last_) + " (" + command(last_) + ")",
+  fail("The printer has not answered line " + std::to_string(open_) + " (" + command(open_) + ")",
        "Check the cable, switch the printer off and on, then print the job again.");
 }
 

@@ -1,14 +1,13 @@
 // What became of a line that a printer answered doubtfully: one that counts lines asks for what it
 // lacks, any other (Klipper) is asked where it stands.
+#include <utility>
+
 #include "firmware_io/gcode_stream.h"
 
 namespace packmerger {
 
 namespace {
 
-// A number so far ahead that no printer takes it for a doubled line, nor one garbled digit makes it
-// one that was given.
-constexpr std::size_t kFarAhead = 2345;
 constexpr int kTries = 3;
 // A line that loses more is bad, and flips bits too, which nobody could see here.
 constexpr int kMostMissed = 5;
@@ -20,7 +19,7 @@ constexpr double kOwed_s = 2;
 
 bool GcodeStream::is_in_doubt() const {
   return (in_doubt_ || was_silent_) && line_count_ != LineCount::kKept && !cancelling_ &&
-         !resend_ && last_ > settled_;
+         !resend_ && open_ > settled_;
 }
 
 // Returns the line to give again, where it got lost.
@@ -48,22 +47,37 @@ void GcodeStream::hear_what_is_owed() {
     if (const auto reply = channel_.receive(kSettle_s)) handle(*reply);
 }
 
-// M105 under a wrong number: a printer that counts asks for the line that it lacks, or for the next
-// one; any other executes it.
-std::optional<std::size_t> GcodeStream::learn_line_count() {
-  for (int i = 0; i < kTries && line_count_ == LineCount::kUnknown && !cancelling_; ++i) {
+// Asks, three times at most, until that settles it. Returns a line that the printer asks for
+// instead; one that may count nothing means nothing by that while it is probed.
+template <typename Ask, typename IsSettled>
+std::optional<std::size_t> GcodeStream::ask_until(const IsSettled& is_settled,
+                                                  const Ask& ask_once) {
+  bool settled = is_settled();
+  for (int i = 0; i < kTries && !settled && !cancelling_; ++i) {
     hear_what_came(kSettle_s);
-    std::string line = numbered_gcode(last_ + kFarAhead, "M105");
-    line.pop_back();
-    probes_ = true;
-    probed_at_s_ = channel_.now_s();
-    send_raw(line, true);
+    ask_once();
     const auto again = hear_answers();
-    probes_ = false;
-    if (again && line_count_ == LineCount::kKept) return again;
+    const bool heeds = !std::exchange(probes_, false) || line_count_ == LineCount::kKept;
+    if (!again) hear_what_came(kSettle_s);
+    asks_position_ = false;
+    settled = is_settled();
+    if (again && heeds) return again;
     resend_.reset();
   }
   return std::nullopt;
+}
+
+// M105 under a wrong number: a printer that counts asks for the line that it lacks, or for the next
+// one; any other executes it.
+std::optional<std::size_t> GcodeStream::learn_line_count() {
+  return ask_until([&] { return line_count_ != LineCount::kUnknown; },
+                   [&] {
+                     std::string line = numbered_gcode(last_ + kFarAhead, "M105");
+                     line.pop_back();
+                     probes_ = true;
+                     probed_at_s_ = channel_.now_s();
+                     send(line, true);
+                   });
 }
 
 // A temperature that was asked for in another way (after a silence) proves nothing.
@@ -74,18 +88,19 @@ void GcodeStream::heed_probe(const GcodeReply& ok) {
 
 std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
   GcodeFate fate = GcodeFate::kUnknown;
-  for (int i = 0; i < kTries && fate == GcodeFate::kUnknown; ++i) {
-    told_.reset();
-    asks_position_ = true;
-    ++positions_owed_;
-    send_raw("M114");
-    const auto again = hear_answers();
-    hear_what_came(kSettle_s);
-    asks_position_ = false;
-    if (cancelling_) return std::nullopt;
-    if (again) return again;
-    if (told_) fate = fate_of(trace_, *told_, answered);
-  }
+  told_.reset();
+  const auto again = ask_until(
+      [&] {
+        if (told_) fate = fate_of(trace_, *told_, answered);
+        return fate != GcodeFate::kUnknown;
+      },
+      [&] {
+        told_.reset();
+        asks_position_ = true;
+        ++positions_owed_;
+        ask("M114");
+      });
+  if (again || cancelling_) return again;
   if (fate == GcodeFate::kTaken) {
     taken_for_granted_ = false;
     place_.learn(*told_);
@@ -94,14 +109,14 @@ std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
   const bool fails = fate == GcodeFate::kUnknown ||
                      (fate == GcodeFate::kMissed && ++missed_ > kMostMissed) ||
                      (fate == GcodeFate::kRepeatable && ++repeated_ > kMostRepeated);
-  if (!fails) return last_;
+  if (!fails) return open_;
   // One that may count after all asks for what it lacks.
   if (line_count_ == LineCount::kIgnored) fail_in_doubt(answered);
   return std::nullopt;
 }
 
 void GcodeStream::fail_in_doubt(bool answered) const {
-  const std::string line = "line " + std::to_string(last_) + " (" + command(last_) + ")";
+  const std::string line = "line " + std::to_string(open_) + " (" + command(open_) + ")";
   const std::string hint =
       "Look at what lies between PackMerger and the printer (cable, serial server, plug-in), then "
       "print the job again.";

@@ -35,7 +35,7 @@ void GcodeStream::obey_requests() {
 // The question is shown no longer, or it would be answered twice, and the second time another one:
 // firmwares that go on say nothing for a while. It comes back where the printer still waits.
 void GcodeStream::pass_on(int answer) {
-  send_raw(abilities_.emergency_parser ? "M876 S" + std::to_string(answer) : std::string("M108"));
+  send(abilities_.emergency_parser ? "M876 S" + std::to_string(answer) : std::string("M108"));
   answered_at_s_ = channel_.now_s();
   question_answered_ = true;
   if (between_) return show_pause();
@@ -104,6 +104,7 @@ std::size_t GcodeStream::pause(std::size_t number) {
     number = execute_between(number, lines);
   }
   stand_still();
+  number = highest_ + 1;
   if (parked && !cancelling_) number = execute_between(number, resume);
   pause_text_.clear();
   between_ = false;
@@ -138,19 +139,27 @@ void GcodeStream::stand_still() {
       asked_at_s = channel_.now_s();
     }
     const auto reply = channel_.receive(kSlice_s);
-    // A line that is really missing is asked for again as soon as the next one is given.
-    if (reply && reply->kind != GcodeReplyKind::kResend && reply->kind != GcodeReplyKind::kIdle)
+    if (reply && reply->kind == GcodeReplyKind::kResend)
+      ask_again_from(reply->number);
+    else if (reply && reply->kind != GcodeReplyKind::kIdle)
       handle(*reply);
   }
+}
+
+// In a pause only questions are given again. A line that is really missing is asked for once more
+// as soon as the next one is given.
+void GcodeStream::ask_again_from(std::size_t number) {
+  if (number <= open_ || number > last_) return;
+  last_ = number - 1;
+  unanswered_.clear();
 }
 
 // Executes lines in front of line `number`, which was never given, with numbers of their own.
 std::size_t GcodeStream::execute_between(std::size_t number,
                                          const std::vector<std::string>& lines) {
-  const std::size_t end = number + lines.size();
+  const std::size_t before = commands_.program_lines(number - 1);
   commands_.insert(number - 1, lines);
-  inserted_.push_back({number, lines.size()});
-  while (number < end && !cancelling_) number = exchange(number);
+  while (commands_.program_lines(number) <= before && !cancelling_) number = exchange(number);
   return number;
 }
 

@@ -1,6 +1,7 @@
 #include "firmware_io/gcode_script.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
@@ -22,25 +23,44 @@ std::string_view GcodeScript::operator[](std::size_t index) const {
   return program_.substr(place.begin, place.length);
 }
 
-GcodeScript::Place GcodeScript::keep(std::string line) {
-  own_.push_back(std::move(line));
-  return {static_cast<std::uint32_t>(own_.size() - 1), kOwn};
+std::size_t GcodeScript::program_lines(std::size_t count) const {
+  count = std::min(count, places_.size());
+  return count - static_cast<std::size_t>(std::lower_bound(own_at_.begin(), own_at_.end(), count) -
+                                          own_at_.begin());
 }
 
-void GcodeScript::append(std::string line) { places_.push_back(keep(std::move(line))); }
+GcodeScript::Place GcodeScript::keep(std::string line) {
+  const auto known = std::find(own_.begin(), own_.end(), line);
+  const auto index = static_cast<std::uint32_t>(known - own_.begin());
+  if (known == own_.end()) own_.push_back(std::move(line));
+  return {index, kOwn};
+}
+
+void GcodeScript::append(std::string line) {
+  own_at_.push_back(places_.size());
+  places_.push_back(keep(std::move(line)));
+}
 
 void GcodeScript::insert(std::size_t index, const std::vector<std::string>& lines) {
   std::vector<Place> places;
   for (const std::string& line : lines) places.push_back(keep(line));
   places_.insert(places_.begin() + static_cast<std::ptrdiff_t>(index), places.begin(),
                  places.end());
+  const auto behind = std::lower_bound(own_at_.begin(), own_at_.end(), index);
+  std::for_each(behind, own_at_.end(), [&](std::size_t& at) { at += lines.size(); });
+  std::vector<std::size_t> at(lines.size());
+  std::iota(at.begin(), at.end(), index);
+  own_at_.insert(behind, at.begin(), at.end());
 }
 
 void GcodeScript::replace(std::size_t index, std::string line) {
   places_[index] = keep(std::move(line));
 }
 
-void GcodeScript::shorten(std::size_t size) { places_.resize(std::min(size, places_.size())); }
+void GcodeScript::shorten(std::size_t size) {
+  places_.resize(std::min(size, places_.size()));
+  own_at_.erase(std::lower_bound(own_at_.begin(), own_at_.end(), size), own_at_.end());
+}
 
 std::vector<std::string> GcodeScript::modes(std::size_t count) const {
   std::size_t positions = count;  // the last G90 or G91
@@ -65,7 +85,7 @@ std::vector<std::string> GcodeScript::modes(std::size_t count) const {
 }
 
 std::size_t GcodeScript::bytes() const {
-  std::size_t bytes = places_.size() * sizeof(Place);
+  std::size_t bytes = places_.size() * sizeof(Place) + own_at_.size() * sizeof own_at_[0];
   for (const std::string& line : own_) bytes += sizeof line + line.capacity();
   return bytes;
 }

@@ -19,6 +19,10 @@ class GcodeScript {
 
   std::size_t size() const { return places_.size(); }
   std::string_view operator[](std::size_t index) const;  // until the next change
+  // One that the link put there, or in the place of the program's.
+  bool is_own(std::size_t index) const { return places_[index].length == kOwn; }
+  // How many of the first `count` lines are the program's.
+  std::size_t program_lines(std::size_t count) const;
 
   void append(std::string line);
   void insert(std::size_t index, const std::vector<std::string>& lines);
@@ -43,8 +47,9 @@ class GcodeScript {
   Place keep(std::string line);
 
   std::string_view program_;
-  std::deque<Place> places_;  // grows without being copied
-  std::vector<std::string> own_;
+  std::deque<Place> places_;         // grows without being copied
+  std::vector<std::string> own_;     // each text once
+  std::vector<std::size_t> own_at_;  // indices of what was appended or inserted, rising
 };
 
 }  // namespace packmerger

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxUnproven = 5;
 constexpr const char* kNoPositions = "M154 S0";
-constexpr std::size_t kMaxPositionTries = 10;
+constexpr int kMaxPositionTries = 10;
 // One line at a time for so many after any trouble.
 constexpr std::size_t kCareful = 10;
 
@@ -30,46 +30,54 @@ void GcodeStream::run() {
   reporter_.state(PrintState::kPrinting);
   std::size_t number = 1;
   while (!is_behind_program(number) || !position_seen_) {
-    if (number > commands_.size() + 1 + kMaxPositionTries)
-      fail("The printer does not say where it is (M114), so the end of the print is unproven",
-           "Look at the print, and switch the printer off and on before the next job.");
-    if (number == commands_.size() + 1) silence_positions(number);
+    if (number > commands_.size()) append_end();
     number = paused_ && may_pause_before(number) && !cancelling_ ? pause(number) : exchange(number);
     tell_done(number);
   }
 }
 
 // Where the printer tells its position unasked, M114 would prove nothing.
-void GcodeStream::silence_positions(std::size_t number) {
-  if (!positions_unasked_ || commands_[commands_.size() - 1] == kNoPositions) return;
-  commands_.append(kNoPositions);
-  inserted_.push_back({number, 1});
+void GcodeStream::append_end() {
+  if (end_ == 0) {
+    if (positions_unasked_) commands_.append(kNoPositions);
+    commands_.append("M400");
+    end_ = commands_.size();
+  }
+  if (++position_tries_ > kMaxPositionTries)
+    fail("The printer does not say where it is (M114), so the end of the print is unproven",
+         "Look at the print, and switch the printer off and on before the next job.");
+  commands_.append("M114");
 }
 
 std::string GcodeStream::command(std::size_t number) const {
-  if (number <= commands_.size()) return std::string(commands_[number - 1]);
-  return number == commands_.size() + 1 ? "M400" : "M114";
+  return std::string(commands_[number - 1]);
 }
 
-std::size_t GcodeStream::program_lines_before(std::size_t number) const {
-  std::size_t lines = std::min(number - 1, commands_.size());
-  for (const Insertion& insertion : inserted_)
-    if (insertion.first < number) lines -= std::min(insertion.count, number - insertion.first);
-  return lines;
+// What the link asks between two lines of the program.
+bool GcodeStream::is_question(std::size_t number) const {
+  if (is_behind_program(number) || !commands_.is_own(number - 1)) return false;
+  return commands_[number - 1] == "M105" || commands_[number - 1] == "M114";
+}
+
+// To a printer that counts nothing no question is given again.
+std::size_t GcodeStream::next_number() const {
+  return (line_count_ == LineCount::kIgnored ? highest_ : last_) + 1;
 }
 
 void GcodeStream::tell_done(std::size_t next) {
-  if (!cancelling_) reporter_.done(program_lines_before(next));
+  if (!cancelling_) reporter_.done(commands_.program_lines(next - 1));
 }
 
 // Gives a line, and others behind it, until the printer has answered all of them; returns the
 // number of the line to give next.
 std::size_t GcodeStream::exchange(std::size_t number) {
+  const bool is_new = number > highest_;
   resend_.reset();
   m105_behind_ = taken_for_granted_ = false;
   if (last_ > 0) hear_what_came();
   if (is_in_doubt())
     if (const auto again = settle_doubt()) return *again;
+  if (is_new) number = highest_ + 1;  // questions took the numbers before
   if (paused_ && !cancelling_ && may_pause_before(number)) return number;
   const bool gives = !resend_;
   if (gives) give(number);
@@ -85,7 +93,8 @@ std::size_t GcodeStream::exchange(std::size_t number) {
     fail("The printer no longer acknowledges what it is sent",
          "Check the cable, switch the printer off and on, then print the job again.");
   if (!taken_for_granted_) far_back_ = 0;
-  return gives ? last_ + 1 : number;
+  if (gives) return next_number();
+  return is_new ? highest_ + 1 : number;
 }
 
 // Until nothing is owed any more; returns a line that the printer asks for.
@@ -118,7 +127,8 @@ void GcodeStream::hear_what_came(double quiet_s) {
 }
 
 bool GcodeStream::may_pause_before(std::size_t number) const {
-  return number == highest_ + 1 && number <= commands_.size() && !between_;
+  return number == highest_ + 1 && number <= commands_.size() && !commands_.is_own(number - 1) &&
+         !between_;
 }
 
 // Within the window, and never behind a command that blocks or any trouble. Marlin queues four
@@ -128,7 +138,7 @@ bool GcodeStream::may_give_another() const {
   const bool calm = !resend_ && !m105_behind_ && !cancelling_ && !paused_ && !between_;
   if (options_.window_bytes == 0 || line_count_ != LineCount::kKept || !calm ||
       next < careful_until_ || next > commands_.size() || unanswered_.size() >= kMostLines ||
-      blocks(command(last_)) || blocks(command(next)))
+      blocks(command(open_)) || blocks(command(next)))
     return false;
   std::size_t bytes = numbered_gcode(next, command(next)).size();
   for (const Given& given : unanswered_) bytes += given.bytes;
@@ -137,22 +147,48 @@ bool GcodeStream::may_give_another() const {
 
 void GcodeStream::give(std::size_t number) {
   std::string line = numbered_gcode(number, command(number));
-  unanswered_.push_back({number, line.size(), gcode_word(command(number)) == "M105"});
-  tally_.begin(unanswered_.back().asks_temperatures);
+  const bool asks = is_question(number);
+  unanswered_.push_back({asks ? 0 : number, line.size(), gcode_word(command(number)) == "M105"});
   line.pop_back();
   channel_.send(line);
-  if (number > highest_) trace_ = place_.follow(command(number)), repeated_ = 0;
-  last_ = number;
-  highest_ = std::max(highest_, number);
   alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
   patience_factor_ = 1;
+  if (asks)
+    tally_.count_sent(unanswered_.back().asks_temperatures);
+  else
+    open(number);
+  last_ = number;
+  highest_ = std::max(highest_, number);
+}
+
+// The line that is waited for from now on, whatever is asked behind it.
+void GcodeStream::open(std::size_t number) {
+  open_ = number;
+  tally_.begin(unanswered_.back().asks_temperatures);
+  if (number > highest_) trace_ = place_.follow(command(number)), repeated_ = 0;
   heat_.begin(command(number));
   if (!between_) prompt_.clear(), choices_.clear();
   show_state();
 }
 
+// A question is a line of its own, with the next number: flipped on its way to another command, it
+// is refused by a printer that checks sums. Numbers that were given stay what they are, so where
+// lines are given again a question is among them already, or its number is far ahead.
+void GcodeStream::ask(const std::string& question) {
+  std::size_t number = last_ + kFarAhead;
+  if (last_ == highest_ || line_count_ == LineCount::kIgnored) {
+    commands_.insert(highest_, {question});
+    number = last_ = ++highest_;
+  } else if (is_question(last_ + 1) && command(last_ + 1) == question) {
+    number = ++last_;
+  }
+  std::string line = numbered_gcode(number, question);
+  line.pop_back();
+  send(line, question == "M105");
+}
+
 void GcodeStream::handle(const GcodeReply& reply) {
-  const bool heating = is_heating(command(last_));
+  const bool heating = is_heating(command(open_));
   reporter_.heaters(reply.heaters);
   if (proves_life(reply)) alive_at_s_ = channel_.now_s();
   switch (reply.kind) {
@@ -198,15 +234,16 @@ void GcodeStream::handle(const GcodeReply& reply) {
 }
 
 void GcodeStream::hear_position(const GcodeReply& reply) {
-  if (is_behind_program(last_)) position_seen_ = true;
+  if (is_behind_program(open_)) position_seen_ = true;
   if (positions_owed_ > 0)
     --positions_owed_;
-  else if (!tells_position(command(last_)) && !reply.has_position)
+  else if (!tells_position(command(open_)) && !reply.has_position)
     positions_unasked_ = true;
   if (asks_position_) told_ = read_gcode_point(reply.text);
 }
 
-void GcodeStream::send_raw(std::string_view line, bool asks_temperatures) {
+// Beside the program; what is obeyed at once only where it has no number comes so.
+void GcodeStream::send(std::string_view line, bool asks_temperatures) {
   channel_.send(line);
   tally_.count_sent(asks_temperatures);
   unanswered_.push_back({0, line.size() + 1, asks_temperatures});
@@ -215,7 +252,7 @@ void GcodeStream::send_raw(std::string_view line, bool asks_temperatures) {
 void GcodeStream::show_state() {
   if (cancelling_ || between_) return;
   const PrintState state =
-      is_heating(command(last_)) ? PrintState::kHeating : PrintState::kPrinting;
+      is_heating(command(open_)) ? PrintState::kHeating : PrintState::kPrinting;
   if (state == PrintState::kPrinting)
     reporter_.state(state, printing_text());
   else if (reporter_.current() != state)

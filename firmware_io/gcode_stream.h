@@ -48,7 +48,11 @@ class GcodeStream {
   // Further answers on their way settle whether a request for a line is still true.
   static constexpr double kSettle_s = 0.05;
 
-  // A line that was sent and not answered. number 0: one without a number.
+  // Ahead of what was given, so far that no printer takes it for a doubled line, nor one garbled
+  // digit makes it one that was given: a printer that counts asks for the line that it lacks.
+  static constexpr std::size_t kFarAhead = 2345;
+
+  // A line that was sent and not answered. number 0: a question, or one without a number.
   struct Given {
     std::size_t number = 0;
     std::size_t bytes = 0;
@@ -60,27 +64,25 @@ class GcodeStream {
     double due_s = 0;
   };
   enum class LineCount { kUnknown, kKept, kIgnored };
-  // Lines that are none of the program's.
-  struct Insertion {
-    std::size_t first = 0;
-    std::size_t count = 0;
-  };
 
   // gcode_stream.cpp: lines and answers
   std::string command(std::size_t number) const;
-  bool is_behind_program(std::size_t number) const { return number > commands_.size() + 1; }
-  std::size_t program_lines_before(std::size_t number) const;
+  bool is_behind_program(std::size_t number) const { return end_ > 0 && number > end_; }
+  bool is_question(std::size_t number) const;
+  std::size_t next_number() const;
   void tell_done(std::size_t next);
   std::size_t exchange(std::size_t number);
   std::optional<std::size_t> hear_answers();
   void give(std::size_t number);
+  void open(std::size_t number);
+  void ask(const std::string& question);
   bool may_give_another() const;
   void hear_what_came(double quiet_s = 0);
   bool may_pause_before(std::size_t number) const;
-  void silence_positions(std::size_t number);
+  void append_end();
   void handle(const GcodeReply& reply);
   void hear_position(const GcodeReply& reply);
-  void send_raw(std::string_view line, bool asks_temperatures = false);
+  void send(std::string_view line, bool asks_temperatures = false);
   void show_state();
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
 
@@ -88,6 +90,7 @@ class GcodeStream {
   std::size_t answered_by(const GcodeReply& ok) const;
   void handle_ok(const GcodeReply& reply);
   void handle_resend(std::size_t asked);
+  void forget_question();
   bool proves_life(const GcodeReply& reply);
   void handle_busy(const GcodeReply& reply);
   void watch_silence();
@@ -100,6 +103,8 @@ class GcodeStream {
   bool is_in_doubt() const;
   std::optional<std::size_t> settle_doubt();
   void hear_what_is_owed();
+  template <typename Ask, typename IsSettled>
+  std::optional<std::size_t> ask_until(const IsSettled& is_settled, const Ask& ask_once);
   std::optional<std::size_t> learn_line_count();
   void heed_probe(const GcodeReply& ok);
   std::optional<std::size_t> prove_by_position(bool answered);
@@ -121,6 +126,7 @@ class GcodeStream {
   void close_question();
   void show_pause();
   void stand_still();
+  void ask_again_from(std::size_t number);
   std::size_t execute_between(std::size_t number, const std::vector<std::string>& lines);
 
   // gcode_cancel.cpp: how a cancel ends
@@ -153,7 +159,6 @@ class GcodeStream {
   double answered_at_s_ = 0;
   std::string complaint_;             // an error line that neither an ok nor a Resend followed
   std::vector<std::string> unknown_;  // words of commands that the printer does not know
-  std::vector<Insertion> inserted_;
 
   bool paused_ = false;     // wanted; begins between two lines
   bool parks_ = false;      // the pause text is executed
@@ -161,7 +166,8 @@ class GcodeStream {
   bool between_ = false;    // in the lines around a pause
 
   // of the lines that are being exchanged
-  std::size_t last_ = 0;  // the one given last
+  std::size_t last_ = 0;  // the one given last,
+  std::size_t open_ = 0;  // and the last that is no question
   std::deque<Given> unanswered_;
   std::optional<Resend> resend_;
   bool m105_behind_ = false;        // an M105 was sent behind them
@@ -183,6 +189,8 @@ class GcodeStream {
   std::optional<GcodePoint> told_;
 
   // over several exchanges
+  std::size_t end_ = 0;              // M400 behind the program, once that was given
+  int position_tries_ = 0;           // M114 behind that
   std::size_t highest_ = 0;          // of all lines ever given
   std::size_t acknowledged_ = 0;     // the highest that an ok was for
   std::size_t careful_until_ = 0;    // the line from which the window may be used again

@@ -52,6 +52,12 @@ inline void lose_answers_behind(FaultyPort& port, std::size_t chunk) {
   };
 }
 
+// "G1 X1" of "N7 G1 X1*83".
+inline std::string command_of(const std::string& line) {
+  const std::size_t begin = line.starts_with("N") ? line.find(' ') + 1 : 0;
+  return line.substr(begin, line.rfind('*') - begin);
+}
+
 // Those of `executed` that belong to the program.
 inline std::vector<std::string> only(const std::vector<std::string>& executed,
                                      const std::vector<std::string>& program) {

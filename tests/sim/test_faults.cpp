@@ -155,12 +155,8 @@ void check_gcode_print(Tally& tally, simulated::MarlinTraits traits) {
   StreamOptions windowed = options();
   windowed.pause_gcode = "M117 standing";
   windowed.window_bytes = *rc::gen::element<std::size_t>(0, 40, 96);
-  // A flipped bit makes M1 of M105, and then somebody must press a button.
-  const PrintListener answers = [&](const PrintReport& report) {
-    if (report.state == PrintState::kWaiting) control.answer(0);
-  };
   const auto failure =
-      failure_of([&] { print_gcode(port, joined(program), windowed, answers, control); });
+      failure_of([&] { print_gcode(port, joined(program), windowed, {}, control); });
   tally.add(port, failure.has_value());
   port.leave_alone(kAfterwards_s);
   const std::vector<std::string> executed = only(port.executed(), program);

@@ -28,7 +28,15 @@ TEST(GcodeScript, HoldsTheProgramAndWhatComesBetween) {
   script.replace(4, "M105");
   EXPECT_THAT(lines_of(script),
               ElementsAre("G28", "M400", "G91", "G1 X1 F600", "M105", "M84", "M400"));
+  for (const auto& [count, program_lines] :
+       std::vector<std::pair<std::size_t, std::size_t>>{{0, 0}, {1, 1}, {3, 1}, {6, 4}, {9, 4}})
+    EXPECT_EQ(script.program_lines(count), program_lines) << count;
+  script.insert(6, {"M105"});
+  EXPECT_EQ(script.program_lines(8), 4u);
+  EXPECT_TRUE(script.is_own(6));
+  EXPECT_FALSE(script.is_own(0));
   script.shorten(3);
+  EXPECT_EQ(script.program_lines(9), 1u);
   EXPECT_THAT(lines_of(script), ElementsAre("G28", "M400", "G91"));
 }
 

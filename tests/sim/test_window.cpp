@@ -40,7 +40,7 @@ class WeighingPort : public Port {
       said_ += c;
       if (c != '\n') continue;
       // An empty line gets no answer; M105, now and then, has room in the ring beside the window.
-      if (said_ != "\n" && said_ != "M105\n") weigh();
+      if (said_ != "\n" && said_.find(" M105*") == std::string::npos) weigh();
       said_.clear();
     }
     return count;
@@ -49,7 +49,7 @@ class WeighingPort : public Port {
   double now_s() const override { return port_.now_s(); }
   std::string name() const override { return port_.name(); }
 
-  // Of numbered lines; what is asked beside the program is a line of its own.
+  // Of lines of the program; what is asked beside it is not weighed.
   std::size_t most_bytes = 0;
   std::size_t most_lines = 0;
 
