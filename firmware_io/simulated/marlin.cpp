@@ -94,19 +94,20 @@ void Marlin::fail_heater() {
   kill("kill() called!");
 }
 
-void Marlin::stop() {
-  say("Error:!! STOP called because of unhomed error - restart with M999");
-  stopped_ = true;
-  tool_.set_target(0, 0);
-  bed_.set_target(0, 0);
+// What its traits have it do with a certain line.
+void Marlin::count_line(double now_s) {
+  ++lines_;
+  if (lines_ == traits_.stops_at) {
+    say("Error:!! STOP called because of unhomed error - restart with M999");
+    stopped_ = true;
+    tool_.set_target(0, now_s);
+    bed_.set_target(0, now_s);
+  }
+  if (lines_ == traits_.fatal_at)
+    say("fatal: Heater/sensor error - Printer stopped and heaters disabled due to this error. Fix "
+        "error and restart with M999.");
+  if (lines_ == traits_.refuses_at) refuses_move_ = true;
 }
-
-void Marlin::fail_fatally() {
-  say("fatal: Heater/sensor error - Printer stopped and heaters disabled due to this error. Fix "
-      "error and restart with M999.");
-}
-
-void Marlin::refuse_move() { refuses_move_ = true; }
 
 void Marlin::run_out() {
   ask("FilamentRunout T0", {});

@@ -28,10 +28,7 @@ class Marlin : public Firmware {
   // What the machine may do in the middle of a print.
   void reset();
   void fail_heater();
-  void stop();          // Marlin's "!! STOP called": it obeys, but moves no more
-  void fail_fatally();  // as Repetier's firmware says it; it goes on answering
-  void refuse_move();   // the next one, as Klipper does
-  void run_out();       // of filament: it changes it by itself, as by an M600 that nobody sent
+  void run_out();  // of filament: it changes it by itself, as by an M600 that nobody sent
   void tell_host(const std::string& action);  // "pause", "resume", "cancel": pressed at its panel
 
  private:
@@ -58,6 +55,7 @@ class Marlin : public Firmware {
   void say(const std::string& line) { output_ += line + "\n"; }
 
   void execute(const std::string& command, double now_s);
+  void count_line(double now_s);
   bool execute_move(const std::string& command, double now_s);
   void execute_report(const std::string& command, double now_s);
   void execute_pause(const std::string& command, double now_s);
@@ -84,6 +82,7 @@ class Marlin : public Firmware {
   bool dead_ = false;
   bool stopped_ = false;
   bool refuses_move_ = false;
+  std::size_t lines_ = 0;  // executed since it booted
 
   // the line
   std::string received_;

@@ -51,6 +51,7 @@ void Marlin::execute(const std::string& command, double now_s) {
   block(Blocked::kNo, now_s);
   if (command.empty()) return;
   executed_.push_back(command);
+  if (!is_injected_) count_line(now_s);
   if (is(command, "M600") && traits_.filament_change) return change_filament(now_s);
   if (is(command, "M600")) return say_unknown(command);
   if (execute_move(command, now_s)) return;
@@ -63,6 +64,7 @@ void Marlin::execute(const std::string& command, double now_s) {
   if (is(command, "M0") || is(command, "M1")) execute_pause(command, now_s);
   if (const auto number = value(command, 'N'); number && is(command, "M110"))
     last_number_ = std::lround(*number);
+  if (is(command, "M999")) stopped_ = false;
   if (is(command, "M112")) kill("kill() called!");
   if (is(command, "M410")) planned_ends_s_.clear();
   execute_report(command, now_s);

@@ -1,5 +1,6 @@
 #include "firmware_io/simulated/traits.h"
 
+#include <charconv>
 #include <utility>
 
 namespace packmerger::simulated {
@@ -36,6 +37,13 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
   return names;
 }
 
+const std::vector<std::pair<std::string_view, std::size_t MarlinTraits::*>>& line_names() {
+  using T = MarlinTraits;
+  static const std::vector<std::pair<std::string_view, std::size_t T::*>> names = {
+      {"stops_at", &T::stops_at}, {"fatal_at", &T::fatal_at}, {"refuses_at", &T::refuses_at}};
+  return names;
+}
+
 const Names<ReplicatorTraits>& names_of(const ReplicatorTraits&) {
   using T = ReplicatorTraits;
   static const Names<T> names = {{"noise_endless", &T::noise_endless},
@@ -59,10 +67,27 @@ bool set(Traits& traits, std::string_view text) {
   return false;
 }
 
-template <typename Traits>
-std::vector<std::string> listed() {
+// "stops_at=40". Lines are counted from 1.
+bool set_line(MarlinTraits& traits, std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos) return false;
+  const std::string_view value = text.substr(equals + 1);
+  std::size_t line = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), line);
+  const bool is_line = error == std::errc() && end == value.data() + value.size() && line > 0;
+  if (!is_line && value != "off") return false;
+  for (const auto& [name, member] : line_names()) {
+    if (name != text.substr(0, equals)) continue;
+    traits.*member = line;
+    return true;
+  }
+  return false;
+}
+
+template <typename Table>
+std::vector<std::string> listed(const Table& table) {
   std::vector<std::string> names;
-  for (const auto& [name, member] : names_of(Traits())) names.emplace_back(name);
+  for (const auto& [name, member] : table) names.emplace_back(name);
   return names;
 }
 
@@ -87,9 +112,12 @@ MarlinTraits klipper() {
   return traits;
 }
 
-bool set_trait(MarlinTraits& traits, std::string_view text) { return set(traits, text); }
+bool set_trait(MarlinTraits& traits, std::string_view text) {
+  return set(traits, text) || set_line(traits, text);
+}
 bool set_trait(ReplicatorTraits& traits, std::string_view text) { return set(traits, text); }
-std::vector<std::string> marlin_trait_names() { return listed<MarlinTraits>(); }
-std::vector<std::string> replicator_trait_names() { return listed<ReplicatorTraits>(); }
+std::vector<std::string> marlin_trait_names() { return listed(names_of(MarlinTraits())); }
+std::vector<std::string> marlin_line_trait_names() { return listed(line_names()); }
+std::vector<std::string> replicator_trait_names() { return listed(names_of(ReplicatorTraits())); }
 
 }  // namespace packmerger::simulated

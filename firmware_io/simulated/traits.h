@@ -2,6 +2,7 @@
 // docs/PROTOCOLS lists what was seen of them.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,10 @@ struct MarlinTraits {
                                // that line's own number, as old RepRapFirmware does
   bool macros = false;         // a command that begins with a word takes eight seconds
   bool comment_blank = false;  // "// action:", "// Unknown command:", as Klipper writes them
+  // What it does once, with the line that it executes as the n-th since it booted; 0: never.
+  std::size_t stops_at = 0;    // "!! STOP called": it obeys, but moves no more until M999
+  std::size_t fatal_at = 0;    // says "fatal:" and goes on answering, as Repetier's firmware does
+  std::size_t refuses_at = 0;  // the next move, with "!!" and an ok, as Klipper does
 };
 
 MarlinTraits marlin_1_1();
@@ -49,12 +54,14 @@ struct ReplicatorTraits {
   bool packet_timeout = true;    // a packet cut short is answered 0x8C after 0.2 s
 };
 
-// "rx_overflow", "rx_overflow=on" or "rx_overflow=off". False where there is no such trait.
+// "rx_overflow", "rx_overflow=on" or "rx_overflow=off"; "stops_at=40" or "stops_at=off". False
+// where there is no such trait.
 bool set_trait(MarlinTraits& traits, std::string_view text);
 bool set_trait(ReplicatorTraits& traits, std::string_view text);
 
-// For help texts.
+// For help texts: of the traits that are on or off, and of those that name a line.
 std::vector<std::string> marlin_trait_names();
+std::vector<std::string> marlin_line_trait_names();
 std::vector<std::string> replicator_trait_names();
 
 }  // namespace packmerger::simulated

@@ -36,14 +36,24 @@ std::string joined(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+// known: how each trait is given.
 template <typename Traits>
 Traits with_traits(Traits traits, const std::vector<std::string>& changes,
-                   const std::vector<std::string>& known) {
+                   const std::string& known) {
   for (const std::string& change : changes)
     if (!set_trait(traits, change))
-      throw Error(Fault::kUsage, "This firmware has no trait " + change,
-                  "Give --trait NAME=on or NAME=off, NAME being one of " + joined(known) + ".");
+      throw Error(Fault::kUsage, "This firmware has no trait " + change, "Give " + known + ".");
   return traits;
+}
+
+std::string marlin_traits() {
+  return "NAME=on or NAME=off of " + joined(simulated::marlin_trait_names()) +
+         "; or NAME=N, where it happens with the N-th line, of " +
+         joined(simulated::marlin_line_trait_names());
+}
+
+std::string replicator_traits() {
+  return "NAME=on or NAME=off of " + joined(simulated::replicator_trait_names());
 }
 
 // What the dialect usually has, unless another was asked for.
@@ -77,12 +87,12 @@ void simulate(const Arguments& arguments) {
   };
   const std::string firmware = firmware_of(arguments, profile.dialect);
   if (profile.dialect == Dialect::kS3g) {
-    const auto traits = with_traits(simulated::ReplicatorTraits(), arguments.traits,
-                                    simulated::replicator_trait_names());
+    const auto traits =
+        with_traits(simulated::ReplicatorTraits(), arguments.traits, replicator_traits());
     return run_simulated_replicator(options, traits, listening, interrupted());
   }
   const auto usual = firmware == "marlin-1.1" ? simulated::marlin_1_1() : simulated::MarlinTraits();
-  const auto traits = with_traits(usual, arguments.traits, simulated::marlin_trait_names());
+  const auto traits = with_traits(usual, arguments.traits, marlin_traits());
   run_simulated_marlin(options, traits, listening, interrupted());
 }
 
@@ -103,9 +113,8 @@ void add_simulate(CLI::App& program) {
   verb->add_option("--firmware", arguments->firmware,
                    "sailfish; or marlin-2.1 (the usual one of the dialect gcode) or marlin-1.1");
   verb->add_option("--trait", arguments->traits,
-                   "One way in which the firmware differs, as NAME=on or NAME=off: " +
-                       joined(simulated::marlin_trait_names()) + "; for sailfish " +
-                       joined(simulated::replicator_trait_names()))
+                   "One way in which the firmware differs: " + marlin_traits() + "; for sailfish " +
+                       replicator_traits())
       ->allow_extra_args(false);
   verb->add_flag("--json", arguments->json, "The first line as JSON");
   verb->callback([arguments] { simulate(*arguments); });

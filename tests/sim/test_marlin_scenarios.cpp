@@ -35,17 +35,22 @@ TEST(Marlin, PrintsAndProvesIt) {
   EXPECT_EQ(port.executed(), executed);
 }
 
+// In the midst of the moves.
+constexpr std::size_t kLine = 40;
+
 // Behind a failure nothing of the program follows: after a reset not a byte, otherwise the safe
 // text.
 void expect_end_after(const std::function<void(Marlin&)>& event, const std::string& cause,
-                      const std::string& safe) {
-  Marlin firmware(Pace{1, true});
+                      const std::string& safe, const std::string& trait = "") {
+  MarlinTraits traits;
+  ASSERT_TRUE(trait.empty() || set_trait(traits, trait)) << trait;
+  Marlin firmware(Pace{1, true}, traits);
   FaultyPort port(firmware);
   std::size_t sent_before = 0;
   port.on_step = [&](std::size_t written) {
-    if (written != 40 || sent_before != 0) return;
+    if (written != kLine || sent_before != 0) return;
     sent_before = port.sent.size();
-    event(firmware);
+    if (event) event(firmware);
   };
   PrintControl control;
   const auto failure = print(port, true, joined(gcode_program(60)), control);
@@ -69,10 +74,10 @@ TEST(Marlin, FailedHeaterEndsThePrint) {
 }
 
 TEST(Marlin, AStopEndsThePrintAndHeatersAreTurnedOff) {
-  expect_end_after([](Marlin& marlin) { marlin.stop(); }, "restart with M999", kSafe);
-  expect_end_after([](Marlin& marlin) { marlin.fail_fatally(); }, "fatal: Heater/sensor error",
-                   kSafe);
-  expect_end_after([](Marlin& marlin) { marlin.refuse_move(); }, "!! Move out of range", kSafe);
+  const auto at = [](const char* trait) { return std::string(trait) + std::to_string(kLine); };
+  expect_end_after({}, "restart with M999", kSafe, at("stops_at="));
+  expect_end_after({}, "fatal: Heater/sensor error", kSafe, at("fatal_at="));
+  expect_end_after({}, "!! Move out of range", kSafe, at("refuses_at="));
 }
 
 TEST(Marlin, CancelWhileHeatingActsWithinASecond) {

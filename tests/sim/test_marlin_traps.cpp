@@ -165,19 +165,36 @@ TEST(MarlinTraps, KlipperWritesABlankBehindSlashes) {
 }
 
 TEST(MarlinTraps, AStoppedPrinterSaysSoAtEveryMove) {
-  Marlin marlin(kRealTime);
+  Marlin marlin(kRealTime, with("stops_at=2"));
   Wire wire(marlin);
-  wire.says("M104 S200\n");
-  marlin.stop();
-  EXPECT_THAT(wire.says(""), HasSubstr("Error:!! STOP called"));
+  EXPECT_EQ(wire.says("M104 S200\n"), "ok\n");
+  EXPECT_THAT(wire.says("M82\n"), HasSubstr("Error:!! STOP called"));
   EXPECT_THAT(wire.says("G1 X1\n"), StartsWith("Printer stopped due to errors."));
   EXPECT_THAT(wire.says("M105\n"), HasSubstr("/0.00"));
+  EXPECT_EQ(wire.says("M999\nG1 X1\n"), "ok\nok\n");
+}
+
+TEST(MarlinTraps, AFatalPrinterGoesOnAnswering) {
+  Marlin marlin(kRealTime, with("fatal_at=2"));
+  Wire wire(marlin);
+  EXPECT_EQ(wire.says("M82\n"), "ok\n");
+  EXPECT_THAT(wire.says("G1 X1\n"), ::testing::MatchesRegex("fatal: .*\nok\n"));
+  EXPECT_EQ(wire.says("G1 X2\n"), "ok\n");
+}
+
+TEST(MarlinTraps, LinesAreCountedFromOne) {
+  MarlinTraits traits;
+  for (const char* wrong : {"stops_at", "stops_at=", "stops_at=on", "stops_at=0", "stops_at=-1",
+                            "stops_at=4x", "starts_at=4"})
+    EXPECT_FALSE(set_trait(traits, wrong)) << wrong;
+  EXPECT_TRUE(set_trait(traits, "stops_at=4"));
+  EXPECT_TRUE(set_trait(traits, "stops_at=off"));
+  EXPECT_EQ(traits.stops_at, 0U);
 }
 
 TEST(MarlinTraps, ARefusedMoveIsAnsweredWithOkAllTheSame) {
-  Marlin marlin(kRealTime);
+  Marlin marlin(kRealTime, with("refuses_at=1"));
   Wire wire(marlin);
-  marlin.refuse_move();
   EXPECT_THAT(wire.says("G1 X1\n"), ::testing::EndsWith("\nok\n"));
   EXPECT_EQ(wire.says("G1 X1\n"), "ok\n");
 }
