@@ -156,7 +156,9 @@ void GcodeStream::watch_silence() {
   const double limit = std::max(options_.timeout_s * (may_be_long ? kLongFactor : 1.0),
                                 kBusiesMissed * busy_interval_s_) +
                        (may_be_long ? dwell_s(command(open_)) : 0);
-  if (now - alive_at_s_ >= limit) fail_in_silence();
+  // Behind an error line it is time for a Resend or an ok.
+  const double since_s = complaint_.empty() ? alive_at_s_ : std::max(alive_at_s_, complained_at_s_);
+  if (now - since_s >= limit) fail_in_silence();
   double patience = limit / kTriesPerTimeout;
   if (busy_seen_) patience = std::min(patience, kBusyPatience_s);
   if (now - std::max(alive_at_s_, attempt_at_s_) >= std::min(patience * patience_factor_, limit))

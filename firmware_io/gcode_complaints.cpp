@@ -9,7 +9,9 @@ namespace packmerger {
 // Whether it is harmless, only what follows tells: a Resend, or an ok to the open line. The words
 // tell nothing, because a line that garbles what is sent garbles them too.
 void GcodeStream::handle_error(const GcodeReply& reply) {
-  if (complaint_.empty()) complaint_ = reply.text;
+  if (!complaint_.empty()) return;
+  complaint_ = reply.text;
+  complained_at_s_ = channel_.now_s();
 }
 
 void GcodeStream::fail_in_silence() const {

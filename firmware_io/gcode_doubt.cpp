@@ -40,11 +40,15 @@ std::optional<std::size_t> GcodeStream::settle_doubt() {
   return again;
 }
 
-// A printer that was only slow has yet to answer whatever it was asked meanwhile.
+// A printer that was only slow has yet to answer whatever it was asked meanwhile; one that says
+// that it has nothing to do has not.
 void GcodeStream::hear_what_is_owed() {
   const double end_s = channel_.now_s() + kOwed_s;
-  while (!resend_ && !tally_.is_complete(temperatures_in_ok_) && channel_.now_s() < end_s)
-    if (const auto reply = channel_.receive(kSettle_s)) handle(*reply);
+  while (!resend_ && !tally_.is_complete(temperatures_in_ok_) && channel_.now_s() < end_s) {
+    const auto reply = channel_.receive(kSettle_s);
+    if (reply && reply->kind == GcodeReplyKind::kIdle) return;
+    if (reply) handle(*reply);
+  }
 }
 
 // Asks, three times at most, until that settles it. Returns a line that the printer asks for

@@ -71,13 +71,15 @@ void GcodeStream::tell_done(std::size_t next) {
 // Gives a line, and others behind it, until the printer has answered all of them; returns the
 // number of the line to give next.
 std::size_t GcodeStream::exchange(std::size_t number) {
-  const bool is_new = number > highest_;
+  bool is_new = number > highest_;
   resend_.reset();
   m105_behind_ = taken_for_granted_ = false;
   if (last_ > 0) hear_what_came();
-  if (is_in_doubt())
+  if (is_in_doubt()) {
     if (const auto again = settle_doubt()) return *again;
-  if (is_new) number = highest_ + 1;  // questions took the numbers before
+    is_new = is_new || line_count_ == LineCount::kIgnored;  // it has the line before
+  }
+  if (is_new) number = highest_ + 1;  // questions took the numbers up to there
   if (paused_ && !cancelling_ && may_pause_before(number)) return number;
   const bool gives = !resend_;
   if (gives) give(number);

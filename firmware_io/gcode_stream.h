@@ -157,7 +157,8 @@ class GcodeStream {
   std::vector<std::string> choices_;  // and the answers it offers
   bool question_answered_ = false;    // and perhaps not heard yet
   double answered_at_s_ = 0;
-  std::string complaint_;             // an error line that neither an ok nor a Resend followed
+  std::string complaint_;             // an error line that neither an ok nor a Resend followed,
+  double complained_at_s_ = 0;        // and since when
   std::vector<std::string> unknown_;  // words of commands that the printer does not know
 
   bool paused_ = false;     // wanted; begins between two lines

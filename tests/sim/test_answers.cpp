@@ -95,6 +95,22 @@ TEST(Life, ALostOkIsNoticedWhateverThePrinterTellsUnasked) {
   }
 }
 
+// It says so every second, and asks for the lost line whatever it is asked itself.
+TEST(Life, APrinterWithNothingToDoOwesNoAnswer) {
+  MarlinTraits traits;
+  traits.idle_wait = true;
+  Marlin firmware(Pace{1, true}, traits);
+  FaultyPort port(firmware);
+  bool lost = false;
+  port.on_send = [&](std::string& bytes) {
+    if (bytes.starts_with("N40 ") && !std::exchange(lost, true)) bytes.clear();
+  };
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(100)), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(only(port.executed(), gcode_program(100)), gcode_program(100));
+}
+
 // The end is not proven by a position that nobody asked for.
 TEST(Life, PositionsAreSilencedBeforeTheEndIsProven) {
   MarlinTraits traits;

@@ -99,6 +99,24 @@ TEST(GarbledHalt, IsToldOnceNothingFollows) {
   EXPECT_LT(port.now_s(), 40);
 }
 
+// The error line is read before the request behind it, when the printer has been silent for long.
+TEST(Complaint, BehindALongSilenceIsNoReasonToGiveUp) {
+  MarlinTraits traits;
+  traits.busy = false;
+  Marlin firmware(Pace{1, true}, traits);
+  FaultyPort port(firmware);
+  bool lost = false;
+  port.on_send = [&](std::string& bytes) {
+    if (bytes.find("G28 W") != std::string::npos && !std::exchange(lost, true)) bytes.clear();
+  };
+  PrintControl control;
+  StreamOptions options = scenario_options();
+  options.timeout_s = 5;
+  const auto failure = print(port, true, joined(gcode_program(30)), control, {}, options);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_EQ(only(port.executed(), gcode_program(30)), gcode_program(30));
+}
+
 MarlinTraits without_filament_change(bool comments) {
   MarlinTraits traits;
   traits.filament_change = false;
