@@ -31,6 +31,33 @@ bool differ(const GcodePoint& a, const GcodePoint& b) {
   return false;
 }
 
+bool is_move(const GcodeLine& line) { return line.is('G', 0) || line.is('G', 1); }
+
+bool near(const std::optional<double>& a, double b, double by) {
+  return a && std::abs(*a - b) <= by;
+}
+
+bool leads_to(const GcodeTrace& line, std::size_t axis, const std::optional<double>& place,
+              double by) {
+  const std::vector<double>& to = line.readings[axis];
+  return std::any_of(to.begin(), to.end(), [&](double each) { return near(place, each, by); });
+}
+
+// Whether each axis that nobody knows how to read is where it leads in one of the ways.
+bool fits_readings(const GcodeTrace& line, const GcodePoint& told) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (!line.readings[i].empty() && !leads_to(line, i, told[i], kRounding_mm)) return false;
+  return true;
+}
+
+// Whether one of those axes leads elsewhere in all of the ways.
+bool moves_anyway(const GcodeTrace& line) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (!line.readings[i].empty() && !leads_to(line, i, line.before[i], 2 * kRounding_mm))
+      return true;
+  return false;
+}
+
 // The axes of `point` that `other` knows too.
 GcodePoint where_known(GcodePoint point, const GcodePoint& other) {
   for (std::size_t i = 0; i < kAxes.size(); ++i)
@@ -55,7 +82,9 @@ GcodePoint read_gcode_point(std::string_view report) {
 
 GcodeTrace GcodePlace::follow(std::string_view command) {
   const GcodeLine line(command, GcodeRules::kMarlin);
-  GcodeTrace trace{at_, {}, true};
+  GcodeTrace trace;
+  trace.before = at_;
+  trace.repeatable = true;
   if (is_macro(command) && !line.is_empty())
     trace.repeatable = lose();
   else if (line.letter() == 'G' && line.sub_number() == 0)
@@ -67,12 +96,55 @@ GcodeTrace GcodePlace::follow(std::string_view command) {
   else if (!line.is_empty())
     trace.repeatable = lose();
   trace.after = at_;
+  if (behind_macro_ && is_move(line) && line.readable())
+    for (std::size_t i = 0; i < kAxes.size(); ++i)
+      if (const auto word = line.value(kAxes[i]); word && trace.before[i] && !at_[i])
+        for (const Reading& reading : readings_of(i, *word, *trace.before[i]))
+          trace.readings[i].push_back(reading.to);
   return trace;
 }
 
 void GcodePlace::learn(const GcodePoint& told) {
   for (std::size_t i = 0; i < kAxes.size(); ++i)
     if (!at_[i]) at_[i] = told[i];
+}
+
+bool GcodePlace::wants_report(std::string_view command) const {
+  if (!behind_macro_ || (relative_ && relative_e_ && inches_)) return false;
+  if (is_macro(command)) return true;
+  const GcodeLine line(command, GcodeRules::kMarlin);
+  const bool moves = line.has('X') || line.has('Y') || line.has('Z');
+  return is_move(line) &&
+         ((moves && (!relative_ || !inches_)) || (line.has('E') && (!relative_e_ || !inches_)));
+}
+
+std::vector<GcodePlace::Reading> GcodePlace::readings_of(std::size_t axis, double word,
+                                                         double before) const {
+  constexpr double kInch_mm = 25.4;
+  const std::optional<bool>& known = axis == kE ? relative_e_ : relative_;
+  std::vector<Reading> readings;
+  for (const bool relative : {false, true})
+    for (const bool inches : {false, true})
+      if (known.value_or(relative) == relative && inches_.value_or(inches) == inches)
+        readings.push_back(
+            {word * (inches ? kInch_mm : 1) + (relative ? before : 0), relative, inches});
+  return readings;
+}
+
+void GcodePlace::learn_modes(std::string_view command, const GcodeTrace& trace,
+                             const GcodePoint& told) {
+  const GcodeLine line(command, GcodeRules::kMarlin);
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    if (trace.readings[i].empty() || !told[i]) continue;
+    std::vector<Reading> readings = readings_of(i, *line.value(kAxes[i]), *trace.before[i]);
+    std::erase_if(readings, [&](const Reading& reading) {
+      return std::abs(reading.to - *told[i]) > 2 * kRounding_mm;
+    });
+    if (readings.size() != 1 || std::abs(readings[0].to - *told[i]) > kRounding_mm) continue;
+    (i == kE ? relative_e_ : relative_) = readings[0].relative;
+    inches_ = readings[0].inches;
+  }
+  learn(told);
 }
 
 bool GcodePlace::follow_g(const GcodeLine& line) {
@@ -153,15 +225,17 @@ bool GcodePlace::lose() {
   relative_.reset();
   relative_e_.reset();
   inches_.reset();
+  behind_macro_ = true;
   return false;
 }
 
 GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {
-  if (differ(line.before, line.after)) {
-    if (agree(told, line.after)) return GcodeFate::kTaken;
+  const bool fits = fits_readings(line, told);
+  if (differ(line.before, line.after) || moves_anyway(line)) {
+    if (agree(told, line.after) && fits) return GcodeFate::kTaken;
     return agree(told, line.before) ? GcodeFate::kMissed : GcodeFate::kUnknown;
   }
-  if (!agree(told, where_known(line.after, line.before))) return GcodeFate::kUnknown;
+  if (!agree(told, where_known(line.after, line.before)) || !fits) return GcodeFate::kUnknown;
   if (answered) return GcodeFate::kTaken;
   return line.repeatable ? GcodeFate::kRepeatable : GcodeFate::kUnknown;
 }

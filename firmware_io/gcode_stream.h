@@ -107,7 +107,9 @@ class GcodeStream {
   std::optional<std::size_t> ask_until(const IsSettled& is_settled, const Ask& ask_once);
   std::optional<std::size_t> learn_line_count();
   void heed_probe(const GcodeReply& ok);
+  void ask_position();
   std::optional<std::size_t> prove_by_position(bool answered);
+  std::optional<std::size_t> follow_behind_macro();
   [[noreturn]] void fail_in_doubt(bool answered) const;
 
   // gcode_complaints.cpp: what the machine finds fault with
@@ -186,7 +188,7 @@ class GcodeStream {
   bool probes_ = false;         // it is being asked whether it counts lines,
   double probed_at_s_ = 0;      // since then
   bool asks_position_ = false;  // M114 was sent to find out
-  int positions_owed_ = 0;      // by the M114 that were sent for that
+  int positions_owed_ = 0;      // at most, by the M114 that were sent for that
   std::optional<GcodePoint> told_;
 
   // over several exchanges

@@ -73,6 +73,67 @@ TEST(Place, IsWhatM114Tells) {
   EXPECT_EQ(after({"G20", "G1 X1"}), nowhere);
 }
 
+// The place behind `line`, given behind a macro that left the head at `before`; learned from what
+// is told behind it and behind the line.
+GcodePoint after_macro(const GcodePoint& before, const std::string& line, const GcodePoint& told,
+                       const std::string& next) {
+  GcodePlace place;
+  EXPECT_FALSE(place.wants_report("G1 X1"));
+  const GcodeTrace macro = place.follow("LAYER_MACRO");
+  EXPECT_TRUE(place.wants_report("LAYER_MACRO"));
+  place.learn_modes("LAYER_MACRO", macro, before);
+  const GcodeTrace trace = place.follow(line);
+  EXPECT_TRUE(place.wants_report(line)) << line;
+  place.learn_modes(line, trace, told);
+  return place.follow(next).after;
+}
+
+TEST(Place, BehindAMacroIsLearnedFromTwoReports) {
+  const GcodePoint before = {50.0, 60.0, 2.0, 10.0};
+  const std::string next = "G1 X1 Y1 E1";
+  EXPECT_EQ(after_macro(before, "G1 X70 Y80 E0.5", {70.0, 80.0, 2.0, 10.5}, next),
+            (GcodePoint{1.0, 1.0, 2.0, 11.5}));
+  EXPECT_EQ(after_macro(before, "G1 X7 Y8 E11", {57.0, 68.0, 2.0, 11.0}, next),
+            (GcodePoint{58.0, 69.0, 2.0, 1.0}));
+  EXPECT_EQ(after_macro(before, "G1 X1 E0.5", {25.4, 60.0, 2.0, 22.7}, next),
+            (GcodePoint{std::nullopt, std::nullopt, 2.0}))
+      << "inches";
+  for (const auto& [line, told] : std::vector<std::pair<std::string, GcodePoint>>{
+           {"G1 X0", {50.0, 60.0, 2.0, 10.0}},      // relative, in either unit
+           {"G1 X70", {50.0, 60.0, 2.0, 10.0}},     // it got lost
+           {"G1 X7 Y8", {64.0, 76.0, 2.0, 10.0}},   // it was doubled
+           {"G1 X70", {70.008, 60.0, 2.0, 10.0}}})  // neither there nor elsewhere
+    EXPECT_EQ(after_macro(before, line, told, next)[0], std::nullopt) << line;
+  EXPECT_EQ(after_macro({0.0, 0.0, 0.0, 0.0}, "G1 X5 E0.1", {5.0, 0.0, 0.0, 0.1}, next),
+            (GcodePoint{std::nullopt, std::nullopt, 0.0}))
+      << "from the origin, absolute and relative lead to one place";
+}
+
+// However it is read, it leads elsewhere.
+TEST(Place, TellsTheFateOfAMoveThatNobodyKnowsHowToRead) {
+  const auto fate = [](const std::string& line, const GcodePoint& told) {
+    GcodePlace place;
+    const GcodeTrace macro = place.follow("LAYER_MACRO");
+    place.learn_modes("LAYER_MACRO", macro, {50.0, 60.0, 2.0, 10.0});
+    return fate_of(place.follow(line), told, true);
+  };
+  EXPECT_EQ(fate("G1 X7 E0.5", {57.0, 60.0, 2.0, 10.5}), GcodeFate::kTaken);
+  EXPECT_EQ(fate("G1 X7 E0.5", {7.0, 60.0, 2.0, 10.5}), GcodeFate::kTaken);
+  EXPECT_EQ(fate("G1 X7 E0.5", {50.0, 60.0, 2.0, 10.0}), GcodeFate::kMissed);
+  EXPECT_EQ(fate("G1 X7 E0.5", {64.0, 60.0, 2.0, 11.0}), GcodeFate::kUnknown) << "doubled";
+  EXPECT_EQ(fate("G1 X70 E0.5", {70.0, 60.0, 2.0, 11.0}), GcodeFate::kUnknown) << "doubled";
+  EXPECT_EQ(fate("G1 X50", {50.0, 60.0, 2.0, 10.0}), GcodeFate::kTaken) << "it has an answer";
+  EXPECT_EQ(fate("G1 X7 E0.5", {57.0, std::nullopt, 2.0}), GcodeFate::kUnknown);
+}
+
+TEST(Place, NothingIsAskedOnceItIsKnown) {
+  GcodePlace place;
+  place.follow("PRINT_START");
+  EXPECT_FALSE(place.wants_report("M104 S200")) << "it leads nowhere";
+  for (const char* line : {"G21", "G90", "M83"}) place.follow(line);
+  EXPECT_FALSE(place.wants_report("G1 X1 E1"));
+}
+
 TEST(Place, IsReadFromAReport) {
   EXPECT_EQ(read_gcode_point("X:1.500 Y:-2.00 Z:0.30 E:12.5 Count X:120 Y:0 Z:5"),
             (GcodePoint{1.5, -2.0, 0.3, 12.5}));
