@@ -80,7 +80,10 @@ void Marlin::take_line(std::string line, double now_s) {
   const bool numbered = traits_.counts_lines && line[0] == 'N';
   if (numbered && !take_number(line)) return;
   const bool checks_sum = !traits_.counts_lines && traits_.checks_sums && line[0] == 'N';
-  if (checks_sum && !has_right_sum(line)) return ask_for(std::atol(line.c_str() + 1));
+  if (checks_sum && !has_right_sum(line)) {
+    if (!traits_.drops_garbled) ask_for(std::atol(line.c_str() + 1));
+    return;
+  }
   line.erase(std::min(line.rfind('*'), line.size()));
   if (!traits_.counts_lines) line.erase(0, behind_number(line));
   // Without an emergency parser a command acts before its turn when its line is read, and only

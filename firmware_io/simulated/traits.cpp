@@ -32,6 +32,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"doubled_ok", &T::doubled_ok},
                                  {"counts_lines", &T::counts_lines},
                                  {"checks_sums", &T::checks_sums},
+                                 {"drops_garbled", &T::drops_garbled},
                                  {"macros", &T::macros},
                                  {"comment_blank", &T::comment_blank}};
   return names;

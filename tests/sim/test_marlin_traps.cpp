@@ -298,6 +298,9 @@ TEST(MarlinTraps, ChecksSumsButCountsNothing) {
   Marlin marlin(kRealTime, traits);
   Wire wire(marlin);
   EXPECT_EQ(wire.says(line(7, "M82") + line(3, "M82") + "\nN9 M83*1\n"), "ok\nok\nResend: 9\nok\n");
+  traits.drops_garbled = true;
+  Marlin newer(kRealTime, traits);
+  EXPECT_EQ(Wire(newer).says("N9 M83*1\n" + line(7, "M82")), "ok\n");
 }
 
 TEST(MarlinTraps, AMacroTakesItsTime) {

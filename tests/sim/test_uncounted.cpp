@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware_io/simulated/marlin.h"
-#include "sim/scenario.h"
+#include "sim/uncounted.h"
 
 namespace packmerger::test {
 namespace {
@@ -14,84 +13,7 @@ using simulated::Marlin;
 using simulated::MarlinTraits;
 using simulated::Pace;
 using ::testing::AnyOf;
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
-
-// Moves that each lead elsewhere, with filament as `mode` (M82 or M83) has it.
-std::vector<std::string> moves(const std::string& mode, int count) {
-  std::vector<std::string> program = {"M104 S100", "G28", "G90", mode, "G92 E0"};
-  for (int i = 1; i <= count; ++i)
-    program.push_back("G1 X" + std::to_string(i % 100) + "." + std::to_string(100 + i) + " Y" +
-                      std::to_string(i) + " E" + (mode == "M83" ? "0.05" : std::to_string(i)));
-  return program;
-}
-
-std::string text(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
-}
-
-struct Outcome {
-  std::optional<Error> failure;
-  std::vector<std::string> executed;  // of the program
-  std::string sent;
-};
-
-// What becomes of a numbered line on its way; `bytes` is all of it.
-using Harm = std::function<void(const std::string& command, std::string& bytes)>;
-
-Outcome outcome(const std::vector<std::string>& program, const Harm& harm,
-                const std::string& lost_answer = "", std::size_t window_bytes = 0,
-                Pace pace = {1, true}) {
-  Marlin firmware(pace, klipper());
-  FaultyPort port(firmware);
-  port.on_send = [&](std::string& bytes) {
-    const std::string command = command_of(bytes);
-    if (!lost_answer.empty()) port.lose_answers = command == lost_answer;
-    if (harm && bytes.starts_with("N")) harm(command, bytes);
-  };
-  PrintControl control;
-  StreamOptions options = scenario_options();
-  options.timeout_s = 5;
-  options.window_bytes = window_bytes;
-  const auto failure = print(port, true, text(program), control, {}, options);
-  return {failure, only(port.executed(), program), port.sent};
-}
-
-// With moves that take three seconds each, the first ones where nobody knows where the head is.
-std::vector<std::string> slow_program() {
-  std::vector<std::string> program = {"M140 S50", "PRINT_START BED=50", "M83"};
-  for (int i = 0; i < 20; ++i) program.push_back("G1 E3." + std::to_string(10 + i) + " F60");
-  for (const char* line : {"G28", "G4 S40", "G4 P60000", "M190 S90", "END_PRINT"})
-    program.emplace_back(line);
-  return program;
-}
-
-TEST(Uncounted, ASlowCommandIsNoLostOne) {
-  const std::vector<std::string> program = slow_program();
-  for (const std::size_t window : {0U, 96U}) {
-    const Outcome seen = outcome(program, {}, "", window, Pace{1, false});
-    EXPECT_FALSE(seen.failure) << seen.failure->what();
-    EXPECT_EQ(seen.executed, program);
-    EXPECT_THAT(seen.sent, ContainsRegex("\n\nN[0-9]+ M105[*]")) << "it was silent for long";
-  }
-}
-
-// The oks of the empty lines behind it come all the same.
-TEST(Uncounted, ASlowCommandWhoseAnswerGotLostIsNotTakenForGranted) {
-  const std::vector<std::string> program = slow_program();
-  Marlin firmware(Pace{1, false}, klipper());
-  FaultyPort port(firmware);
-  bool lost = false;
-  port.on_send = [&](std::string& bytes) {
-    if (bytes.find("PRINT_START") != std::string::npos && !std::exchange(lost, true)) bytes.clear();
-  };
-  PrintControl control;
-  const auto failure = print(port, true, text(program), control);
-  ASSERT_TRUE(failure);
-  EXPECT_THAT(failure->what(), HasSubstr("executed line 2 (PRINT_START BED=50)"));
-}
 
 TEST(Uncounted, ALostAnswerIsMadeUpFor) {
   for (const char* mode : {"M82", "M83"}) {
@@ -144,47 +66,6 @@ TEST(Uncounted, ADoubledLineEndsThePrintWhereItDoesHarm) {
   }
 }
 
-// Where it left the head, and how moves are read behind it, the printer tells when it is asked, so
-// a lost answer or a lost line further on is made up for.
-TEST(Uncounted, BehindAMacroThePlaceIsLearnedAgain) {
-  for (const char* mode : {"M82", "M83"})
-    for (const bool loses_line : {false, true}) {
-      std::vector<std::string> program = moves(mode, 60);
-      program.insert(program.begin() + 20, "LAYER_MACRO Z=1");
-      bool done = false;
-      const Harm harm = [&](const std::string& command, std::string& bytes) {
-        if (loses_line && command == program[40] && !std::exchange(done, true)) bytes.clear();
-      };
-      const Outcome seen = outcome(program, harm, loses_line ? "" : program[40]);
-      EXPECT_FALSE(seen.failure) << mode << loses_line << ": " << seen.failure->what();
-      EXPECT_EQ(seen.executed, program) << mode << loses_line;
-    }
-}
-
-// What is asked there may get lost as anything else: the macro was answered, and nobody doubts it.
-TEST(Uncounted, WhatIsAskedBehindAMacroMayGetLost) {
-  std::vector<std::string> program = moves("M83", 40);
-  program.insert(program.begin() + 20, "LAYER_MACRO Z=1");
-  bool behind_macro = false;
-  int asked = 0;
-  const Outcome seen = outcome(program, [&](const std::string& command, std::string& bytes) {
-    behind_macro = behind_macro || command == program[20];
-    if (behind_macro && command == "M114" && ++asked == 1) bytes.clear();
-  });
-  EXPECT_FALSE(seen.failure) << seen.failure->what();
-  EXPECT_EQ(seen.executed, program);
-  EXPECT_GE(asked, 3);
-}
-
-TEST(Uncounted, WhatAMacroDidNobodyKnows) {
-  std::vector<std::string> program = moves("M83", 20);
-  program.insert(program.begin() + 10, "M600");
-  program.insert(program.begin() + 10, "M240");
-  const Outcome seen = outcome(program, {}, "M240");
-  ASSERT_TRUE(seen.failure);
-  EXPECT_THAT(seen.failure->what(), HasSubstr("executed line 11 (M240): its answer got lost"));
-}
-
 // A flipped letter makes a command that is passed over.
 TEST(Uncounted, AGarbledCommandIsGivenAgain) {
   const std::vector<std::string> program = moves("M83", 60);
@@ -209,30 +90,32 @@ TEST(Uncounted, OneLineAtATimeWhateverTheWindow) {
   EXPECT_EQ(seen.executed, program);
 }
 
-// Old RepRapFirmware asks for what came garbled, and counts nothing all the same.
+// Old RepRapFirmware asks for what came garbled, and counts nothing all the same; newer drops it.
 TEST(Uncounted, AnythingLostIsFoundThoughSumsAreChecked) {
   const std::vector<std::string> program = moves("M83", 60);
-  for (const std::size_t window : {0U, 96U}) {
-    MarlinTraits traits = klipper();
-    traits.checks_sums = true;
-    Marlin firmware(Pace{1, true}, traits);
-    FaultyPort port(firmware);
-    std::size_t step = 0;
-    port.on_send = [&](std::string& bytes) {
-      if (step == 5 || bytes.find(program[10 * (step + 1)] + "*") == std::string::npos) return;
-      if (++step % 2 == 1)
-        bytes[bytes.find('X') + 1] ^= 1;
-      else
-        bytes.clear();
-    };
-    PrintControl control;
-    StreamOptions options = scenario_options();
-    options.window_bytes = window;
-    const auto failure = print(port, true, text(program), control, {}, options);
-    EXPECT_FALSE(failure) << failure->what();
-    EXPECT_EQ(step, 5u);
-    EXPECT_EQ(only(port.executed(), program), program);
-  }
+  for (const bool drops : {false, true})
+    for (const std::size_t window : {0U, 96U}) {
+      MarlinTraits traits = klipper();
+      traits.checks_sums = true;
+      traits.drops_garbled = drops;
+      Marlin firmware(Pace{1, true}, traits);
+      FaultyPort port(firmware);
+      std::size_t step = 0;
+      port.on_send = [&](std::string& bytes) {
+        if (step == 5 || bytes.find(program[10 * (step + 1)] + "*") == std::string::npos) return;
+        if (++step % 2 == 1)
+          bytes[bytes.find('X') + 1] ^= 1;
+        else
+          bytes.clear();
+      };
+      PrintControl control;
+      StreamOptions options = scenario_options();
+      options.window_bytes = window;
+      const auto failure = print(port, true, text(program), control, {}, options);
+      EXPECT_FALSE(failure) << failure->what();
+      EXPECT_EQ(step, 5u);
+      EXPECT_EQ(only(port.executed(), program), program);
+    }
 }
 
 // A window asks a printer whether it counts; nothing got lost, and the place is nobody's business.
