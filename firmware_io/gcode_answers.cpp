@@ -36,7 +36,7 @@ std::size_t GcodeStream::answered_by(const GcodeReply& ok) const {
   };
   if (ok.has_temperature) return index_of([](const Given& g) { return g.asks_temperatures; });
   if (ok.number > 0 && ok.number <= last_)
-    return index_of([&](const Given& g) { return g.number == ok.number; });
+    return index_of([&](const Given& g) { return std::max(g.number, g.question) == ok.number; });
   if (unanswered_.empty() || (unanswered_.front().asks_temperatures && temperatures_in_ok_))
     return unanswered_.size();
   return 0;

@@ -152,7 +152,8 @@ bool GcodeStream::may_give_another() const {
 void GcodeStream::give(std::size_t number) {
   std::string line = numbered_gcode(number, command(number));
   const bool asks = is_question(number);
-  unanswered_.push_back({asks ? 0 : number, line.size(), gcode_word(command(number)) == "M105"});
+  unanswered_.push_back(
+      {asks ? 0 : number, line.size(), gcode_word(command(number)) == "M105", asks ? number : 0});
   line.pop_back();
   channel_.send(line);
   alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
@@ -189,6 +190,7 @@ void GcodeStream::ask(const std::string& question) {
   std::string line = numbered_gcode(number, question);
   line.pop_back();
   send(line, question == "M105");
+  unanswered_.back().question = number;
 }
 
 void GcodeStream::handle(const GcodeReply& reply) {
@@ -250,7 +252,7 @@ void GcodeStream::hear_position(const GcodeReply& reply) {
 void GcodeStream::send(std::string_view line, bool asks_temperatures) {
   channel_.send(line);
   tally_.count_sent(asks_temperatures);
-  unanswered_.push_back({0, line.size() + 1, asks_temperatures});
+  unanswered_.push_back({0, line.size() + 1, asks_temperatures, 0});
 }
 
 void GcodeStream::show_state() {

@@ -57,6 +57,7 @@ class GcodeStream {
     std::size_t number = 0;
     std::size_t bytes = 0;
     bool asks_temperatures = false;  // M105
+    std::size_t question = 0;        // the number that a question came with
   };
   // A line that the printer asked for, and when to give it even if no further ok comes.
   struct Resend {

@@ -235,6 +235,21 @@ TEST(SurplusOks, ThatCameLateAreMadeUpForByTheNextProof) {
   for (std::size_t i = 200; i < 240; ++i) EXPECT_EQ(firmware.on_its_way[i], 1u) << i;
 }
 
+// It has no heater, so its answers to M105 are known by their numbers alone.
+TEST(NamedOks, AreForQuestionsToo) {
+  Parrot firmware([](const std::string& line) -> std::string {
+    if (!line.starts_with("N") || line.starts_with("N0 ")) return polite(line);
+    const std::string ok = "ok N" + std::to_string(std::atol(line.c_str() + 1)) + " P15 B3\n";
+    return command_of(line) == "M114" ? "X:0 Y:0 Z:0 E:0\n" + ok : ok;
+  });
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = print(port, true, joined(gcode_program(250)), control);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_THAT(port.sent, HasSubstr(" M105*"));
+  EXPECT_EQ(port.sent.find("\n\n"), std::string::npos) << "no answer was missed";
+}
+
 TEST(SurplusOks, OpenNothing) {
   MarlinTraits doubled;
   doubled.doubled_ok = true;
