@@ -18,9 +18,12 @@
 #include "base/descriptor.h"
 #include "base/error.h"
 #include "base/remains.h"
+#include "base/sign_of_life.h"
 
 namespace packmerger {
 namespace {
+
+constexpr std::size_t kReadBlock = 128 << 10;  // bytes; a slow share takes a moment for as many
 
 std::string reason() { return std::strerror(errno); }
 
@@ -32,6 +35,7 @@ std::string reason() { return std::strerror(errno); }
 void sync_path(const fs::path& path, int flags) {
   Descriptor file(::open(path.c_str(), flags | O_CLOEXEC));
   if (file.get() < 0 || ::fsync(file.get()) != 0) cannot_write(path, reason());
+  disk_answered();
 }
 
 // Calls take(bytes, count) for each block of the file.
@@ -44,9 +48,10 @@ void read_blocks(const fs::path& path, const Take& take) {
                 "Cannot open " + path.string() + ": " + reason(),
                 "Check the name and that you may read it.");
   }
-  std::vector<char> block(1 << 20);
+  std::vector<char> block(kReadBlock);
   for (;;) {
     const ssize_t count = ::read(file.get(), block.data(), block.size());
+    disk_answered();
     if (count == 0) return;
     if (count < 0 && errno == EINTR) continue;
     if (count < 0)
@@ -97,7 +102,9 @@ std::string make_beside(const fs::path& path, const Make& make) {
     if (::getrandom(random.data(), random.size(), 0) < 0) cannot_write(path, reason());
     std::string name = start;
     for (const unsigned char each : random) name += kLetters[each % kLetters.size()];
-    if (make(name.c_str()) >= 0) return name;
+    const bool is_made = make(name.c_str()) >= 0;
+    disk_answered();
+    if (is_made) return name;
     if (errno != EEXIST) cannot_write(path, reason());
   }
 }
@@ -142,24 +149,32 @@ void write_file_whole(const fs::path& path, std::string_view bytes, unsigned mod
   };
   while (!bytes.empty()) {
     const ssize_t count = ::write(file.get(), bytes.data(), bytes.size());
+    disk_answered();
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail();
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
   if (::fsync(file.get()) != 0) fail();
+  disk_answered();
   if (::close(file.release()) != 0) fail();
+  disk_answered();
   if (::rename(name.c_str(), path.c_str()) != 0) fail();
+  disk_answered();
   sync_folder(folder);
 }
 
 int rename_keeping(const fs::path& from, const fs::path& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  const auto worked = [](int result) {
+    disk_answered();
+    return result == 0;
+  };
+  if (worked(::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE))) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
-  if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0 ? 0 : errno;
+  if (worked(::link(from.c_str(), to.c_str()))) return worked(::unlink(from.c_str())) ? 0 : errno;
   if (errno == EEXIST || errno == EXDEV || errno == ENOENT) return errno;
   struct stat there {};
-  if (::lstat(to.c_str(), &there) == 0) return EEXIST;
-  return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+  if (worked(::lstat(to.c_str(), &there))) return EEXIST;
+  return worked(::rename(from.c_str(), to.c_str())) ? 0 : errno;
 }
 
 void sync_folder(const fs::path& folder) { sync_path(folder, O_RDONLY | O_DIRECTORY); }

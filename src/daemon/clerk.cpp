@@ -40,9 +40,9 @@ void fetch_settings(const FetchOrder& order) {
 }
 
 // A copy whose original cannot be removed is taken back: the file would be found again.
-void copy_here(const FetchOrder& order, const std::function<void()>& on_block) {
+void copy_here(const FetchOrder& order) {
   fetch_settings(order);
-  copy_file_whole(order.from, order.to, on_block);
+  copy_file_whole(order.from, order.to);
   if (order.keep) return;
   if (::unlink(order.from.c_str()) == 0) {
     if (order.with_settings) ::unlink(settings_beside(order.from).c_str());
@@ -57,8 +57,8 @@ void copy_here(const FetchOrder& order, const std::function<void()>& on_block) {
 }
 
 // The model first: where its name is taken by now, nothing of it may have been put there.
-void put_away(const FileOrder& order, const std::function<void()>& on_block) {
-  if (fs::exists(order.from)) move_new(order.from, order.to, on_block);
+void put_away(const FileOrder& order) {
+  if (fs::exists(order.from)) move_new(order.from, order.to);
   const fs::path settings = settings_beside(order.from);
   if (order.with_settings && is_taken(settings)) {
     const fs::path beside = settings_beside(order.to);
@@ -102,8 +102,8 @@ Claimed claim(const ClaimOrder& order) {
   return claimed;
 }
 
-Fetched fetch(const FetchOrder& order, const std::function<void()>& on_block) {
-  return {order.job, failure_of([&] { copy_here(order, on_block); })};
+Fetched fetch(const FetchOrder& order) {
+  return {order.job, failure_of([&] { copy_here(order); })};
 }
 
 Placed place(const PlaceOrder& order) {
@@ -122,8 +122,8 @@ Deleted clear_away(const DeleteOrder& order) {
   return deleted;
 }
 
-Filed file(const FileOrder& order, const std::function<void()>& on_block) {
-  return {order.job, failure_of([&] { put_away(order, on_block); })};
+Filed file(const FileOrder& order) {
+  return {order.job, failure_of([&] { put_away(order); })};
 }
 
 }  // namespace packmerger

@@ -35,13 +35,11 @@ void FolderClerk::run() {
 
 void FolderClerk::carry_out(const ClerkOrder& order) {
   const Pulse::Stroke stroke(desk_.pulse);
-  const auto goes_on = [&] { stroke.renew(); };
   if (const auto* watched = std::get_if<WatchOrder>(&order)) watch(*watched);
   if (const auto* arrived = std::get_if<ClaimOrder>(&order)) events_.push(claim_found(*arrived));
-  if (const auto* distant = std::get_if<FetchOrder>(&order))
-    events_.push(fetch_found(*distant, goes_on));
+  if (const auto* distant = std::get_if<FetchOrder>(&order)) events_.push(fetch_found(*distant));
   if (const auto* ended = std::get_if<PlaceOrder>(&order)) events_.push(place(*ended));
-  if (const auto* placed = std::get_if<FileOrder>(&order)) events_.push(file(*placed, goes_on));
+  if (const auto* placed = std::get_if<FileOrder>(&order)) events_.push(file(*placed));
   if (const auto* old = std::get_if<DeleteOrder>(&order)) events_.push(clear_away(*old));
 }
 
@@ -71,8 +69,8 @@ Claimed FolderClerk::claim_found(const ClaimOrder& order) {
   return claimed;
 }
 
-Fetched FolderClerk::fetch_found(const FetchOrder& order, const std::function<void()>& goes_on) {
-  const Fetched fetched = fetch(order, goes_on);
+Fetched FolderClerk::fetch_found(const FetchOrder& order) {
+  const Fetched fetched = fetch(order);
   if (order.keep) return fetched;
   if (fetched.failure)
     refuse(order.from, *fetched.failure);

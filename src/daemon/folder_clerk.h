@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,7 +35,7 @@ class FolderClerk {
   void carry_out(const ClerkOrder& order);
   void watch(const WatchOrder& order);
   Claimed claim_found(const ClaimOrder& order);
-  Fetched fetch_found(const FetchOrder& order, const std::function<void()>& goes_on);
+  Fetched fetch_found(const FetchOrder& order);
   void refuse(const std::filesystem::path& file, const Failure& failure);
   void let_go(const std::filesystem::path& file);
   void look();

@@ -1,7 +1,6 @@
 // Moving a user's files about without ever losing or replacing one.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 
@@ -20,13 +19,12 @@ bool is_taken(const fs::path& path);
 Moved rename_new(const fs::path& from, const fs::path& to);
 
 // Copies through a temporary sibling: afterwards `to`, which must not exist, is whole and synced,
-// or absent. Throws as rename_new, and Error{kIo} when from cannot be read. on_block: called
-// whenever the disks took another MiB at most.
-void copy_file_whole(const fs::path& from, const fs::path& to,
-                     const std::function<void()>& on_block = {});
+// or absent. Throws as rename_new, and Error{kIo} when from cannot be read. What is copied is
+// synced bit by bit, so that no single call waits for all of a large file.
+void copy_file_whole(const fs::path& from, const fs::path& to);
 
 // rename_new, or where that is not possible copy_file_whole and then removing from.
-void move_new(const fs::path& from, const fs::path& to, const std::function<void()>& on_block = {});
+void move_new(const fs::path& from, const fs::path& to);
 
 // `folder/name`, or `folder/stem (2).ext` and so on: the first where neither that file nor a note,
 // a picture or a settings file beside it are there.

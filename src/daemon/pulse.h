@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/clock.h"
+#include "base/sign_of_life.h"
 #include "base/wall_clock.h"
 
 namespace packmerger {
@@ -14,20 +15,20 @@ class Pulse {
   // While it lives, the thread is at the disk.
   class Stroke {
    public:
-    explicit Stroke(Pulse& pulse) : pulse_(pulse) { pulse_.set(true); }
+    explicit Stroke(Pulse& pulse) : pulse_(pulse), answers_([&pulse] { pulse.set(true); }) {
+      pulse_.set(true);
+    }
     Stroke(const Stroke&) = delete;
     Stroke& operator=(const Stroke&) = delete;
     ~Stroke() { pulse_.set(false); }
 
-    // The disk answered, and is asked on: a long copy does not hang.
-    void renew() const { pulse_.set(true); }
-
    private:
     Pulse& pulse_;
+    AnswerListener answers_;  // it answered, and is asked on: a long copy does not hang
   };
 
-  // Since when (Unix time) it has waited for the disk, where that is longer than so many seconds.
-  // Any thread may ask.
+  // Since when (Unix time) it has waited for one answer of the disk, where that is longer than so
+  // many seconds. Any thread may ask.
   std::optional<double> hangs_since(double for_s) const {
     const std::lock_guard lock(mutex_);
     const bool hangs = is_there_ && steady_now_s() - since_s_ > for_s;

@@ -112,7 +112,7 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
 }
 
 fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name,
-                   const std::string& tray_files, const std::function<void()>& on_block) {
+                   const std::string& tray_files) {
   const PreparedJob job = read_prepared(job_folder);
   const Profile profile = read_prepared_profile(job_folder);
   if (profile.dialect != Dialect::kHandoff)
@@ -132,10 +132,10 @@ fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::st
   try {
     for (int tray = 1; tray <= job.trays; ++tray)
       copy_file_whole(tray_to_send(job_folder, profile, tray),
-                      folder.path() / tray_file(profile, tray), on_block);
+                      folder.path() / tray_file(profile, tray));
     check_documents(folder.path(), profile, job.trays, tray_files);  // the very copies
     for (const char* file : {"job.json", "preview.png"})
-      copy_file_whole(job_folder / file, folder.path() / file, on_block);
+      copy_file_whole(job_folder / file, folder.path() / file);
     // Whoever takes it from there is another program or person, whatever the umask here.
     fs::permissions(folder.path(), fs::perms{0755}, ignored);
     folder.publish(target);

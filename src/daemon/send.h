@@ -3,7 +3,6 @@
 // by wire.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "base/files.h"
@@ -36,8 +35,7 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
 // when job_folder is no job folder or a tray's document is not there, Error{kBadInput} when one is
 // not what tray_files tells (as in send_tray), Error{kUsage} when its printer is sent its jobs,
 // Error{kCannotWrite} when `to` cannot be written to or the name is taken by something else.
-// on_block: called again and again while files are copied.
 fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name,
-                   const std::string& tray_files = {}, const std::function<void()>& on_block = {});
+                   const std::string& tray_files = {});
 
 }  // namespace packmerger

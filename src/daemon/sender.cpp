@@ -27,8 +27,8 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
     if (order.control->cancelled()) throw Error(Fault::kInterrupted, "Cancelled", "");
     if (printer.hands_over()) {
       const Pulse::Stroke stroke(pulse);
-      const fs::path target = hand_over(order.folder, printer.handoff_folder, order.handoff_name,
-                                        order.tray_files, [&] { stroke.renew(); });
+      const fs::path target =
+          hand_over(order.folder, printer.handoff_folder, order.handoff_name, order.tray_files);
       return {order.job, SendOutcome::kDone, {}, "handed over in " + target.string()};
     }
     send_tray(order.folder, order.tray, printer.port, order.told_file, listener, *order.control,

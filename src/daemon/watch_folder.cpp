@@ -14,6 +14,7 @@
 #include "base/backoff.h"
 #include "base/error.h"
 #include "base/names.h"
+#include "base/sign_of_life.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 #include "daemon/whole_file.h"
@@ -139,6 +140,7 @@ void WatchFolder::read_folder(double now_s, Found& found) {
   std::vector<std::tuple<std::int64_t, std::string>> ripe;  // when it was last changed, name
   for (const std::string& name : candidates) {
     Seen& seen = seen_.at(name);
+    disk_answered();
     if (is_settings_name(name)) {
       tell_if_alone(name, seen, now_s, found);
       continue;
@@ -154,7 +156,9 @@ void WatchFolder::read_folder(double now_s, Found& found) {
 // False for what is not a file that may be taken.
 bool WatchFolder::note_file(const fs::path& path, Seen& seen, double now_s, Found& found) const {
   struct stat status {};
-  if (::lstat(path.c_str(), &status) != 0) return false;
+  const bool is_there = ::lstat(path.c_str(), &status) == 0;
+  disk_answered();
+  if (!is_there) return false;
   if (const std::string reason = reason_to_ignore(status); !reason.empty()) {
     if (!seen.told) found.ignored.push_back({path, reason});
     seen.told = true;
@@ -211,7 +215,9 @@ bool WatchFolder::is_ripe(const fs::path& path, const Seen& seen, double now_s) 
   const double still_s = now_s - seen.still_since_s;
   if (still_s < rules_.still_s) return false;
   if (still_s >= std::max(rules_.give_up_s, rules_.still_s)) return true;
-  if (is_being_written(path)) return false;
+  const bool is_open = is_being_written(path);
+  disk_answered();
+  if (is_open) return false;
   switch (file_is_whole(path)) {
     case Whole::kYes:
       return true;
