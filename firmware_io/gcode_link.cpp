@@ -11,6 +11,7 @@
 #include "firmware_io/gcode_channel.h"
 #include "firmware_io/gcode_script.h"
 #include "firmware_io/gcode_stream.h"
+#include "gcode/gcode_line.h"
 
 namespace packmerger {
 
@@ -27,6 +28,17 @@ void refuse_unanswerable_pauses(const GcodeCommands& commands, const GcodeAbilit
 }
 
 constexpr const char* kReportNothing = "M155 S0";
+
+// Of the safe text: without numbers no sum protects it, and noise is what many prints fail by.
+std::string what_turns_heaters_off(const std::string& text) {
+  std::string lines;
+  for (const GcodeCommand& command : gcode_commands(text)) {
+    const GcodeLine line(command.text, GcodeRules::kMarlin);
+    const bool is_heater = line.is('M', 104) || line.is('M', 140) || line.is('M', 141);
+    if (is_heater && line.value('S') == 0.0) lines += std::string(command.text) + "\n";
+  }
+  return lines;
+}
 
 // Behind a print, and after a failure the line count is unknown, so these go without numbers; no
 // answer is insisted on. A printer that says it has stopped may still obey; one that is dead is
@@ -67,18 +79,20 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
   refuse_unanswerable_pauses(commands, abilities);
 
   const std::string silence = abilities.autoreport ? kReportNothing : "";
+  const std::string safe =
+      options.safe_gcode + "\n" + what_turns_heaters_off(options.safe_gcode) + silence;
   GcodeStream stream(channel, std::move(script), options, abilities, reporter, control);
   try {
     stream.run();
   } catch (const Error& error) {
     if (!stream.may_send()) throw;
-    const std::string refusal = send_text(channel, options.safe_gcode + "\n" + silence);
+    const std::string refusal = send_text(channel, safe);
     if (stream.was_cancelled() && error.fault() == Fault::kIo) stream.throw_failed_cancel(error);
     if (refusal.empty() || ascii::has(error.what(), refusal)) throw;
     throw Error(error.fault(), std::string(error.what()) + "; then it said: " + refusal,
                 error.hint());
   } catch (...) {
-    send_text(channel, options.safe_gcode + "\n" + silence);
+    send_text(channel, safe);
     throw;
   }
   send_text(channel, silence);

@@ -89,5 +89,24 @@ TEST(FlippedQuestion, IsRefusedInAPause) {
   }
 }
 
+// The safe text behind a failure has no numbers: the count may be what failed.
+TEST(FlippedSafeText, TurnsTheHeatersOffAllTheSame) {
+  MarlinTraits traits;
+  traits.fatal_at = 60;
+  Marlin firmware(Pace{1, true}, traits);
+  FaultyPort port(firmware);
+  std::size_t flipped = 0;
+  port.on_send = [&](std::string& bytes) {
+    const bool is_first =
+        bytes == "M104 S0\n" ? flipped == 0 : bytes == "M140 S0\n" && flipped == 1;
+    if (is_first) bytes[3] ^= 1, ++flipped;  // M105, M141
+  };
+  PrintControl control;
+  EXPECT_TRUE(print(port, true, joined(gcode_program(100)), control));
+  EXPECT_EQ(flipped, 2u);
+  for (const char* command : {"M104 S0", "M140 S0"})
+    EXPECT_THAT(port.executed(), Contains(command));
+}
+
 }  // namespace
 }  // namespace packmerger::test
