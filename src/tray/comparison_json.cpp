@@ -79,7 +79,8 @@ Comparison comparison_of(const Json& json) {
   comparison.hollow = estimate_of(json, "hollow");
   comparison.packed = estimate_of(json, "packed");
   for (const char* way : {"as_is", "solid", "hollow", "packed"})
-    if (const auto found = json.find(way); found != json.end() && found->contains("reason"))
+    if (const auto found = json.find(way);
+        found != json.end() && found->contains("reason") && !found->at("reason").is_null())
       comparison.refused[way] = {found->at("reason"), found->value("hint", "")};
   return comparison;
 }

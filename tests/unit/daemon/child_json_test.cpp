@@ -17,7 +17,8 @@ const char* const kGood = R"({"version": 1, "variant": "packed", "seed": 1, "pro
   "inputs": [{"file": "bunny.stl", "sha256": "ab"}], "parts": [{"tray": 1}],
   "warnings": [{"code": "suspicious_size", "text": "small"}],
   "estimates": {"packed": {"fits": true, "cost": 1, "time_s": 2, "parts": 2, "trays": 1,
-                           "currency": "EUR", "source": "slicer"}}})";
+                           "currency": "EUR", "source": "slicer"},
+                "hollow": {"fits": false, "reason": "No wall is kept", "hint": "Raise wall_mm."}}})";
 
 std::string nested(int levels) {
   const auto count = static_cast<std::size_t>(levels);

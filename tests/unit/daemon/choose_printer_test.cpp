@@ -81,6 +81,10 @@ TEST(ChoosePrinter, TakesTheWayThatWouldBePrepared) {
     take_estimates(none, text, variant);
     EXPECT_FALSE(none.fits()) << text;
   }
+  PrinterOffer refused;
+  take_estimates(refused, R"({"packed": {"fits": false, "reason": "No wall\u202e is kept"}})",
+                 "packed");
+  EXPECT_EQ(refused.why_not, "No wall? is kept");
 }
 
 // The workshop's printers and an entry that stands for them.

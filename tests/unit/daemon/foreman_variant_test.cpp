@@ -73,11 +73,14 @@ TEST(Variant, TheAdviceIsToldWithOneJob) {
   shop.prepare(order, 1, false);
   JobRecord job = shop.job(1);
   job.estimates = R"({"packed":{"fits":true,"time_s":5,"cost":3},
-                      "hollow":{"fits":true,"time_s":5,"cost":2},"solid":{"fits":false}})";
+                      "hollow":{"fits":true,"time_s":5,"cost":2},"solid":{"fits":false,
+                       "reason":"It stands on a point"}})";
   shop.store_->save(job, "");
   EXPECT_EQ(shop.view(1).at("advice").at("variant"), "hollow");
   EXPECT_FALSE(shop.view(1).at("advice").at("text").get<std::string>().empty());
-  EXPECT_EQ(shop.ask(wanted(1, "solid")).at("error").at("fault"), 2) << "it does not fit so";
+  const json refused = shop.ask(wanted(1, "solid")).at("error");
+  EXPECT_EQ(refused.at("fault"), 2) << "it cannot be made so";
+  EXPECT_NE(refused.at("what").get<std::string>().find("It stands on a point"), std::string::npos);
 }
 
 TEST(Variant, AnEndedJobBecomesANewOne) {
