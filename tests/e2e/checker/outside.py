@@ -10,6 +10,7 @@ PROBE_MM = 1e-3      # how far outside a sheet it is asked whether there is matt
 COARSEST_MM = 2.0    # sheets that cross others are cut at least so small
 FINEST_MM = 0.05     # and no smaller where they enter matter
 BESIDE_MM = 0.1      # on either side of what closes a hole it is asked whether there is matter
+ROWS = 100_000       # of points and triangles that are worked on at once
 ROUNDING_MM = 1e-9   # of the plane a triangle lies in
 # A triangle's probes, by its corners' weights: near the corners, near the middles of the edges, the middle; off any
 # symmetry, so that no line through them meets an edge.
@@ -35,13 +36,14 @@ class Matter:
 def winding_by_angle(points, corners):
     """The same for a surface with holes, which need no line to miss them: a fraction, about 1/2 across a hole."""
     found = np.zeros(len(points))
-    for k, point in enumerate(points):
-        arms = corners - point
-        a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]
-        la, lb, lc = np.linalg.norm(arms, axis=2).T
-        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-        dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
-        found[k] = np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb).sum() / (2 * np.pi)
+    step = max(1, ROWS // len(corners))
+    for at in range(0, len(points), step):
+        a, b, c = (corners[None, :, k] - points[at:at + step, None] for k in range(3))
+        la, lb, lc = (np.sqrt(np.einsum("...i,...i", arm, arm)) for arm in (a, b, c))
+        volume = np.einsum("...i,...i", a, np.cross(b, c))
+        dots = [np.einsum("...i,...i", p, q) for p, q in ((a, b), (b, c), (c, a))]
+        angles = np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb)
+        found[at:at + step] = angles.sum(axis=1) / (2 * np.pi)
     return found
 
 
