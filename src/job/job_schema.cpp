@@ -104,10 +104,17 @@ ALTER TABLE job ADD COLUMN tries INTEGER NOT NULL DEFAULT 0;
 PRAGMA user_version = 12;
 )";
 
+constexpr const char* kAddWishes = R"(
+ALTER TABLE job ADD COLUMN to_delete INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN cut_short INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX job_to_delete ON job (id) WHERE to_delete = 1;
+PRAGMA user_version = 13;
+)";
+
 // Each makes the version after the one before it; the first begins with an empty file.
-constexpr std::array<const char*, 12> kSteps = {
-    kMakeTables,   kAddTold,     kAddPrograms, kAddSettings, kAddTimes, kAddChoice,
-    kAddTrayFiles, kAddApproval, kAddDeleting, kAddWanted,   kAddTurn,  kAddTries};
+constexpr std::array<const char*, 13> kSteps = {
+    kMakeTables,  kAddTold,     kAddPrograms, kAddSettings, kAddTimes, kAddChoice, kAddTrayFiles,
+    kAddApproval, kAddDeleting, kAddWanted,   kAddTurn,     kAddTries, kAddWishes};
 
 }  // namespace
 

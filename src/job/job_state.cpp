@@ -30,7 +30,7 @@ bool may_follow(JobState from, JobState to) {
     case JobState::kReceived:
       return to == JobState::kPreparing;
     case JobState::kPreparing:
-      return to == JobState::kReady;
+      return to == JobState::kReady || to == JobState::kReceived;
     case JobState::kReady:
       return to == JobState::kApproved || to == JobState::kReceived;
     case JobState::kApproved:

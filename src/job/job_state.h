@@ -4,7 +4,8 @@
 //                                                 ↑___________|    handed_over
 //                                             (the next tray)
 //
-// What is ready or approved can go back to received, to be prepared in another way.
+// What is ready or approved can go back to received, to be prepared in another way; so can what is
+// being prepared, when the daemon ends.
 // From every state that has not ended a job can also become failed or cancelled. `claiming` means
 // that its file may still lie in the watched folder; `approved` that it waits for its printer and
 // for a clear bed.

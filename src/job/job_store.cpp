@@ -1,9 +1,10 @@
 #include "job/job_store.h"
 
-#include <chrono>
 #include <utility>
 
 #include "base/error.h"
+#include "job/deletable_jobs.h"
+#include "job/job_rows.h"
 #include "job/job_schema.h"
 #include "job/jobs_at_hand.h"
 #include "job/sqlite.h"
@@ -11,6 +12,8 @@
 namespace packmerger {
 
 using sqlite::Connection;
+using sqlite::read_jobs;
+using sqlite::select_jobs;
 using sqlite::Statement;
 using sqlite::Transaction;
 
@@ -24,117 +27,6 @@ struct JobStore::Database {
 
 namespace {
 
-constexpr std::string_view kColumns =
-    "printer, name, origin, input, by_copy, sha256, state, held, attempt, folder, trays, "
-    "next_tray, pays, "
-    "estimates, reason, hint, filed, filing_done, again_of, received_s, sending_s, ended_s, "
-    "told, told_total, variant, at_once, with_settings, predicted_s, "
-    "predicted_by, printed_s, paused_s, chosen_by, choice, "
-    "profile, seed, tray_files, approved, doubt, deleted_s, "
-    "wanted, turn, trouble, trouble_since_s, tries";
-
-// As many as there are columns.
-std::string placeholders() {
-  std::string text = "?";
-  for (const char c : kColumns)
-    if (c == ',') text += ",?";
-  return text;
-}
-
-std::string select(std::string_view condition) {
-  return "SELECT id, " + std::string(kColumns) + " FROM job " + std::string(condition);
-}
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-void bind_job(Statement& statement, const JobRecord& job) {
-  const auto flag = [](bool value) { return static_cast<std::int64_t>(value); };
-  statement.bind(job.printer).bind(job.name).bind(job.origin).bind(job.input);
-  statement.bind(flag(job.by_copy)).bind(job.sha256);
-  statement.bind(state_name(job.state)).bind(flag(job.held)).bind(std::int64_t{job.attempt});
-  statement.bind(job.folder).bind(std::int64_t{job.trays}).bind(std::int64_t{job.next_tray});
-  statement.bind(flag(job.pays)).bind(job.estimates).bind(job.reason).bind(job.hint);
-  statement.bind(job.filed).bind(flag(job.filing_done)).bind(job.again_of);
-  statement.bind(job.received_s).bind(job.sending_s).bind(job.ended_s);
-  statement.bind(job.told).bind(job.told_total).bind(job.variant).bind(flag(job.at_once));
-  statement.bind(flag(job.with_settings)).bind(job.predicted_s).bind(job.predicted_by);
-  statement.bind(job.printed_s).bind(job.paused_s).bind(job.chosen_by).bind(job.choice);
-  statement.bind(job.profile).bind(job.seed).bind(job.tray_files);
-  statement.bind(flag(job.approved)).bind(job.doubt).bind(job.deleted_s);
-  statement.bind(job.wanted).bind(job.turn).bind(job.trouble).bind(job.trouble_since_s);
-  statement.bind(std::int64_t{job.tries});
-}
-
-JobState read_state(Statement& row) {
-  const std::string name = row.text();
-  if (const std::optional<JobState> state = state_named(name)) return *state;
-  throw Error(Fault::kIo, "The jobs' database holds the unknown state \"" + name + "\"",
-              "It was changed by another program; restore it or move it away.");
-}
-
-JobRecord read_job(Statement& row) {
-  JobRecord job;
-  job.id = row.integer();
-  job.printer = row.text();
-  job.name = row.text();
-  job.origin = row.text();
-  job.input = row.text();
-  job.by_copy = row.flag();
-  job.sha256 = row.text();
-  job.state = read_state(row);
-  job.held = row.flag();
-  job.attempt = static_cast<int>(row.integer());
-  job.folder = row.text();
-  job.trays = static_cast<int>(row.integer());
-  job.next_tray = static_cast<int>(row.integer());
-  job.pays = row.flag();
-  job.estimates = row.text();
-  job.reason = row.text();
-  job.hint = row.text();
-  job.filed = row.text();
-  job.filing_done = row.flag();
-  job.again_of = row.integer();
-  job.received_s = row.real();
-  job.sending_s = row.real();
-  job.ended_s = row.real();
-  job.told = row.integer();
-  job.told_total = row.integer();
-  job.variant = row.text();
-  job.at_once = row.flag();
-  job.with_settings = row.flag();
-  job.predicted_s = row.real();
-  job.predicted_by = row.text();
-  job.printed_s = row.real();
-  job.paused_s = row.real();
-  job.chosen_by = row.text();
-  job.choice = row.text();
-  job.profile = row.text();
-  job.seed = row.integer();
-  job.tray_files = row.text();
-  job.approved = row.flag();
-  job.doubt = row.text();
-  job.deleted_s = row.real();
-  job.wanted = row.text();
-  job.turn = row.integer();
-  job.trouble = row.text();
-  job.trouble_since_s = row.real();
-  job.tries = static_cast<int>(row.integer());
-  return job;
-}
-
-std::vector<JobRecord> read_jobs(Statement& rows) {
-  std::vector<JobRecord> jobs;
-  while (rows.step()) jobs.push_back(read_job(rows));
-  return jobs;
-}
-
-void write_event(const Connection& connection, const JobRecord& job, std::string_view note) {
-  Statement statement(connection, "INSERT INTO event (job, at_s, state, note) VALUES (?, ?, ?, ?)");
-  statement.bind(job.id).bind(now_s()).bind(state_name(job.state)).bind(note).finish();
-}
-
 // The newest job with the bytes of this one among those whose id fits; 0: none.
 std::int64_t newest_alike(const Connection& connection, const JobRecord& job,
                           const std::string& id_fits) {
@@ -143,12 +35,6 @@ std::int64_t newest_alike(const Connection& connection, const JobRecord& job,
   row.bind(job.sha256).bind(job.id);
   return row.step() ? row.integer() : 0;
 }
-
-// Of two jobs in one folder neither is deleted before the other.
-constexpr std::string_view kDeletable =
-    "WHERE ended_s > 0 AND ended_s <= ? AND filing_done = 1 AND deleted_s = 0 AND NOT EXISTS "
-    "(SELECT 1 FROM job AS other WHERE other.folder = job.folder AND other.folder <> '' AND "
-    "(other.ended_s = 0 OR other.ended_s > ? OR other.filing_done = 0))";
 
 void write_printer(const Connection& connection, const PrinterRecord& printer) {
   Statement statement(connection,
@@ -174,9 +60,10 @@ JobStore::JobStore(const std::filesystem::path& file)
   const auto take = [&](Statement& rows) {
     for (const JobRecord& job : read_jobs(rows)) database_->jobs.written(job, job.sha256);
   };
-  Statement open(connection, select("WHERE ended_s = 0 OR filing_done = 0"));
+  Statement open(connection, select_jobs("WHERE ended_s = 0 OR filing_done = 0"));
   take(open);
-  Statement ended(connection, select("WHERE ended_s > 0 ORDER BY ended_s DESC, id DESC LIMIT ?"));
+  Statement ended(connection,
+                  select_jobs("WHERE ended_s > 0 ORDER BY ended_s DESC, id DESC LIMIT ?"));
   ended.bind(static_cast<std::int64_t>(kLastEnded));
   take(ended);
   Statement printers(connection, "SELECT name, bed_clear, paused FROM printer");
@@ -195,11 +82,7 @@ JobRecord JobStore::add(JobRecord job) {
   if (!may_begin(job.state)) forbidden(job, "nothing");
   Connection& connection = database_->connection;
   Transaction transaction(connection);
-  Statement statement(connection, "INSERT INTO job (" + std::string(kColumns) + ") VALUES (" +
-                                      placeholders() + ")");
-  bind_job(statement, job);
-  statement.finish();
-  job.id = sqlite3_last_insert_rowid(connection.get());
+  job.id = sqlite::insert_job(connection, job);
   write_event(connection, job, "");
   transaction.commit();
   database_->jobs.written(job, "");
@@ -223,10 +106,7 @@ void JobStore::write(const JobRecord& job, bool may_tell, std::string_view note,
   const bool stays_ended = before && before->state == job.state && has_ended(job.state);
   if (!before || (!stays_ended && !may_follow(before->state, job.state)))
     forbidden(job, before ? state_name(before->state) : "nothing");
-  Statement statement(connection, "UPDATE job SET (" + std::string(kColumns) + ") = (" +
-                                      placeholders() + ") WHERE id = ?");
-  bind_job(statement, job);
-  statement.bind(job.id).finish();
+  sqlite::update_job(connection, job);
   const bool is_told = may_tell && (before->state != job.state || !note.empty());
   if (is_told) write_event(connection, job, note);
   if (printer != nullptr) write_printer(connection, *printer);
@@ -250,9 +130,11 @@ void JobStore::forget(std::int64_t id) {
 }
 
 std::optional<JobRecord> JobStore::find(std::int64_t id) const {
-  Statement row(database_->connection, select("WHERE id = ?"));
-  if (!row.bind(id).step()) return std::nullopt;
-  return read_job(row);
+  Statement row(database_->connection, select_jobs("WHERE id = ?"));
+  row.bind(id);
+  std::vector<JobRecord> jobs = read_jobs(row);
+  if (jobs.empty()) return std::nullopt;
+  return std::move(jobs.front());
 }
 
 const std::map<std::int64_t, JobRecord>& JobStore::open_jobs() const {
@@ -272,40 +154,32 @@ std::vector<JobRecord> JobStore::newest_ended(int limit, std::int64_t before) co
   const std::optional<JobRecord> last = find(before);
   const bool is_ended = last && last->ended_s > 0;
   Statement rows(database_->connection,
-                 select("WHERE ended_s > 0 AND " +
-                        std::string(is_ended ? "(ended_s, id) < (?, ?)" : "id < ?") +
-                        " ORDER BY ended_s DESC, id DESC LIMIT ?"));
+                 select_jobs("WHERE ended_s > 0 AND " +
+                             std::string(is_ended ? "(ended_s, id) < (?, ?)" : "id < ?") +
+                             " ORDER BY ended_s DESC, id DESC LIMIT ?"));
   if (is_ended) rows.bind(last->ended_s);
   rows.bind(before).bind(std::int64_t{limit});
   return read_jobs(rows);
 }
 
 std::vector<JobRecord> JobStore::deletable(double until_s, int limit) const {
-  Statement rows(database_->connection,
-                 select(std::string(kDeletable) + " ORDER BY ended_s, id LIMIT ?"));
-  rows.bind(until_s).bind(until_s).bind(std::int64_t{limit});
-  return read_jobs(rows);
+  return sqlite::deletable(database_->connection, until_s, limit);
 }
 
 std::int64_t JobStore::count_deletable(double until_s) const {
-  Statement row(database_->connection, "SELECT COUNT(*) FROM job " + std::string(kDeletable));
-  row.bind(until_s).bind(until_s);
-  return row.step() ? row.integer() : 0;
+  return sqlite::count_deletable(database_->connection, until_s);
 }
 
 double JobStore::ended_beyond(int kept) const {
-  Statement row(database_->connection,
-                "SELECT ended_s FROM job WHERE ended_s > 0 AND deleted_s = 0 "
-                "ORDER BY ended_s DESC LIMIT 1 OFFSET ?");
-  row.bind(std::int64_t{kept});
-  return row.step() ? row.real() : 0;
+  return sqlite::ended_beyond(database_->connection, kept);
 }
 
 std::vector<JobRecord> JobStore::sharing(const JobRecord& job) const {
-  Statement rows(database_->connection,
-                 select("WHERE id = ? OR (folder = ? AND folder <> '') ORDER BY id"));
-  rows.bind(job.id).bind(job.folder);
-  return read_jobs(rows);
+  return sqlite::sharing(database_->connection, job);
+}
+
+std::vector<std::int64_t> JobStore::to_delete() const {
+  return sqlite::to_delete(database_->connection);
 }
 
 bool JobStore::is_empty() const {
@@ -338,18 +212,7 @@ std::int64_t JobStore::same_bytes_before(const JobRecord& job) const {
 }
 
 std::vector<JobEvent> JobStore::history(std::int64_t id) const {
-  Statement rows(database_->connection,
-                 "SELECT at_s, state, note FROM event WHERE job = ? ORDER BY rowid");
-  rows.bind(id);
-  std::vector<JobEvent> events;
-  while (rows.step()) {
-    JobEvent event;
-    event.at_s = rows.real();
-    event.state = read_state(rows);
-    event.note = rows.text();
-    events.push_back(std::move(event));
-  }
-  return events;
+  return sqlite::read_events(database_->connection, id);
 }
 
 std::vector<FinishedPrint> JobStore::finished_prints(const std::string& printer,

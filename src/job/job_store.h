@@ -65,12 +65,15 @@ struct JobRecord {
   std::string predicted_by;     // that estimate's source, as job.json has it
   double printed_s = 0;         // by the trays that are printed, pauses left out; 0: not known
   double paused_s = 0;
-  double received_s = 0;  // Unix time
-  double sending_s = 0;   // when the first tray began; 0: not yet
-  double ended_s = 0;     // 0: not yet
-  double deleted_s = 0;   // when its folder was deleted; 0: it was not
-  std::string trouble;    // why the next tray could not be begun at the last try; empty: it was
-                          // not tried in vain
+  double received_s = 0;   // Unix time
+  double sending_s = 0;    // when the first tray began; 0: not yet
+  double ended_s = 0;      // 0: not yet
+  double deleted_s = 0;    // when its folder was deleted; 0: it was not
+  bool to_delete = false;  // somebody wants its folder deleted, and it is not yet
+  int cut_short = 0;       // how often in a row the daemon died while it was being prepared or its
+                           // print begun
+  std::string trouble;     // why the next tray could not be begun at the last try; empty: it was
+                           // not tried in vain
   double trouble_since_s = 0;  // Unix time of the first such try
   int tries = 0;               // in vain since then
   std::uint64_t edition = 0;   // which one this is of what the store has at hand: every write makes
@@ -140,6 +143,8 @@ class JobStore {
   // When the job ended that comes after the `kept` that ended last and whose folders are still
   // there; 0: there is none.
   double ended_beyond(int kept) const;
+  // Those whose folders somebody wants deleted.
+  std::vector<std::int64_t> to_delete() const;
   // Those that use the same job folder, this one too.
   std::vector<JobRecord> sharing(const JobRecord& job) const;
   // Whether there never was a job.

@@ -8,6 +8,10 @@
 namespace packmerger {
 namespace {
 
+constexpr const char* kDropSinceVersion12 =
+    "DROP INDEX job_to_delete; ALTER TABLE job DROP COLUMN to_delete; ALTER TABLE job DROP COLUMN "
+    "cut_short;";
+
 constexpr const char* kDropSinceVersion7 =
     "ALTER TABLE job DROP COLUMN trouble; ALTER TABLE job DROP COLUMN trouble_since_s; "
     "ALTER TABLE job DROP COLUMN tries; ALTER TABLE job DROP COLUMN turn; ALTER TABLE job DROP "
@@ -32,7 +36,8 @@ constexpr const char* kDropSinceVersion1 =
 void age(const fs::path& file, int version, const std::string& drop) {
   sqlite3* raw = nullptr;
   ASSERT_EQ(sqlite3_open(file.c_str(), &raw), SQLITE_OK);
-  const std::string sql = drop + "PRAGMA user_version = " + std::to_string(version);
+  const std::string sql =
+      kDropSinceVersion12 + drop + "PRAGMA user_version = " + std::to_string(version);
   ASSERT_EQ(sqlite3_exec(raw, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
   sqlite3_close(raw);
 }
@@ -76,6 +81,23 @@ TEST(JobSchema, JobsPreparedBeforeTheirTraysWereHashedAreTakenOver) {
     back.tray_files = "[1]";
     store.save(back);
   }
+}
+
+TEST(JobSchema, AFileWithoutWishesIsTakenOver) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "jobs.sqlite";
+  const std::int64_t id = JobStore(file).add(prepared_job()).id;
+  age(file, 12, "");
+  JobStore store(file);
+  JobRecord back = store.find(id).value();
+  EXPECT_FALSE(back.to_delete);
+  EXPECT_EQ(back.cut_short, 0);
+  EXPECT_TRUE(store.to_delete().empty());
+  back.to_delete = true;
+  back.cut_short = 2;
+  store.save(back);
+  EXPECT_EQ(store.find(id)->cut_short, 2);
+  EXPECT_EQ(store.to_delete(), std::vector<std::int64_t>{id});
 }
 
 // Its history tells what was approved, and that of a job printed again was nobody's approval.
