@@ -3,8 +3,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "daemon/daemon_view.h"
 #include "daemon/job_view.h"
 #include "daemon/json_values.h"
+#include "daemon/printer_view.h"
 #include "daemon/waits.h"
 #include "daemon/web.h"
 

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "base/names.h"
-#include "daemon/job_view.h"
 #include "daemon/move_file.h"
 #include "daemon/waits.h"
 

@@ -2,7 +2,7 @@
 // touched by their clerks alone (folder_clerk.h).
 #include "base/names.h"
 #include "daemon/foreman.h"
-#include "daemon/job_view.h"
+#include "daemon/job_notes.h"
 #include "daemon/model_options.h"
 #include "daemon/move_file.h"
 

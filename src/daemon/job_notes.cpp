@@ -1,8 +1,8 @@
-// The notes that lie beside a job's file at its end.
+#include "daemon/job_notes.h"
+
 #include <fmt/format.h>
 
 #include "base/names.h"
-#include "daemon/job_view.h"
 #include "daemon/json_values.h"
 #include "daemon/move_file.h"
 

@@ -8,6 +8,7 @@
 
 #include "daemon/job_view.h"
 #include "daemon/json_values.h"
+#include "daemon/printer_view.h"
 
 namespace packmerger {
 namespace {

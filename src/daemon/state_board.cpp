@@ -1,8 +1,10 @@
 #include "daemon/state_board.h"
 
 #include "daemon/api.h"
+#include "daemon/daemon_view.h"
 #include "daemon/job_view.h"
 #include "daemon/json_values.h"
+#include "daemon/printer_view.h"
 
 namespace packmerger {
 namespace {
