@@ -227,6 +227,7 @@ Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
   const auto key_verb = key_verbs().find(name->get<std::string>());
   if (key_verb != key_verbs().end()) return {key_verb->second(foreman.config().web, keys, request)};
   const auto verb = verbs().find(name->get<std::string>());
+  // by this sentence programs of later versions know that this daemon is older than they are
   if (verb == verbs().end()) not_understood("The request's verb is unknown");
   const auto starter = starters().find(verb->first);
   if (starter == starters().end()) return {verb->second(foreman, request)};

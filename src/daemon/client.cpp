@@ -5,6 +5,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -23,6 +24,9 @@ using nlohmann::json;
 constexpr time_t kTimeout_s = 10;
 constexpr std::size_t kMaxReplyBytes = std::size_t{64} << 20;
 
+// What the daemon of every version says of a verb that it does not know (api.cpp).
+constexpr std::string_view kUnknownVerb = "The request's verb is unknown";
+
 constexpr const char* kStartIt =
     "Start it with packmergerd --config FILE, or name its socket with --socket; the package's "
     "service has it at /run/packmerger/packmergerd.sock.";
@@ -30,6 +34,15 @@ constexpr const char* kStartIt =
 [[noreturn]] void not_there(const std::filesystem::path& socket, const std::string& why,
                             const char* hint = kStartIt) {
   throw Error(Fault::kUnavailable, "No daemon answers at " + socket.string() + ": " + why, hint);
+}
+
+[[noreturn]] void too_old(std::string verb) {
+  std::replace(verb.begin(), verb.end(), '.', ' ');
+  throw Error(Fault::kUsage,
+              "The daemon that runs is older than this program, and does not know \"" + verb + "\"",
+              "Restart it: systemctl restart packmergerd, where the package's service runs it; "
+              "otherwise end it, and start the new one. That cancels what is being printed: wait "
+              "until packmerger printers list shows no job.");
 }
 
 class Connection {
@@ -105,6 +118,7 @@ json ask_daemon(const std::filesystem::path& socket, const json& request) {
   if (!reply.is_object()) not_there(socket, "it does not answer in PackMerger's way");
   if (reply.value("ok", false)) return reply.value("result", json());
   const json error = reply.value("error", json::object());
+  if (error.value("what", "") == kUnknownVerb) too_old(request.value("verb", ""));
   throw Error(static_cast<Fault>(error.value("fault", static_cast<int>(Fault::kInternal))),
               error.value("what", "The daemon refused"),
               error.value("hint", "Look into the daemon's messages."));

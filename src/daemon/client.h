@@ -11,7 +11,8 @@ namespace packmerger {
 std::filesystem::path default_socket();
 
 // Sends one request and returns the reply's result. Throws Error{kUnavailable} when no daemon
-// answers there, and the daemon's own Error when it refuses.
+// answers there, Error{kUsage} where it is of an earlier version that does not know the verb, and
+// the daemon's own Error when it refuses.
 nlohmann::json ask_daemon(const std::filesystem::path& socket, const nlohmann::json& request);
 
 }  // namespace packmerger

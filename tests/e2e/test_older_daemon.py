@@ -46,6 +46,14 @@ class AnOlderDaemon(unittest.TestCase):
         self.assertEqual(json.loads(self.says("jobs", "list", "--json")), JOBS)
         self.assertEqual(json.loads(self.says("printers", "list", "--json")), PRINTERS)
 
+    def test_what_it_does_not_know_is_told_with_the_way_out(self):
+        for arguments in (["jobs", "first", "7"], ["jobs", "prepare", "7", "--variant", "hollow"], ["jobs", "delete", "7"]):
+            result = program.run(*arguments, "--socket", self.socket)
+            self.assertEqual((result.code, result.out), (2, ""))
+            self.assertIn(f'older than this program, and does not know "jobs {arguments[1]}"', result.err)
+            self.assertIn("systemctl restart packmergerd", result.err)
+            self.assertIn("cancels what is being printed", result.err)
+
 
 if __name__ == "__main__":
     unittest.main()
