@@ -57,7 +57,7 @@ class Pace {
 
  private:
   static constexpr double kQuick_s = 2;
-  static constexpr double kSlow_s = 6;
+  static constexpr double kSlow_s = 7;
   static constexpr std::size_t kLeast = std::size_t{128} << 10;
   static constexpr std::size_t kMost = std::size_t{8} << 20;
 
