@@ -25,6 +25,7 @@
 #include "daemon/front_desk.h"
 #include "daemon/news.h"
 #include "daemon/reload.h"
+#include "daemon/room_to_start.h"
 #include "daemon/service_manager.h"
 #include "daemon/socket_server.h"
 #include "daemon/state_folder.h"
@@ -255,8 +256,10 @@ void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
   const StateLock lock(config.state);
   for (const std::string& line : told) log(line);
   Signals signals;
+  Deleted cleared = make_room_to_start(config.state, log);
   JobStore store(config.state / "jobs.sqlite");
   Queue<Event> events;
+  if (!cleared.jobs.empty()) events.push(std::move(cleared));
   Crew crew(config);
   KeyRing keys(config.state / "keys.json");
   Foreman foreman(config, store, crew, log);

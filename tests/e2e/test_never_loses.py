@@ -1,11 +1,14 @@
 #!/usr/bin/python3
 """Nothing is lost and nothing printed twice: the daemon is killed at random moments, its disk fills and breaks, clocks jump.
 PACKMERGER_KILLS and PACKMERGER_DISK_FAULTS make the series longer, PACKMERGER_SEED another."""
+import contextlib
 import errno
 import os
 import pathlib
 import random
+import sqlite3
 import statistics
+import subprocess
 import sys
 import tempfile
 import time
@@ -126,6 +129,47 @@ class Disk(Case):
                 struck += self.broken(number, first, count, cause)
         self.assertGreater(struck, DISK_FAULTS / 2, "most faults must have struck")
         print(f"{struck} of {DISK_FAULTS} faults struck", file=sys.stderr)
+
+
+class FullAtTheStart(Case):
+    """A small disk of its own with the state folder, full to the last byte while no daemon runs."""
+
+    def setUp(self):
+        super().setUp()
+        state = self.folder / "state"
+        state.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=24m", "packmerger-test", state], capture_output=True,
+                                 text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"no disk can be mounted here: {mounted.stderr.strip()}")
+        self.addCleanup(lambda: subprocess.run(["umount", "--lazy", state], check=False))
+
+    def test_old_jobs_are_cleared_and_it_goes_on(self):
+        shop = Workshop(self, self.folder, printers=1)
+        shop.start()
+        old, young, after = (gcode(name) + tail for name, tail in
+                             (("old", f"; {'x' * 78}\n" * 40000), ("young", ""), ("after", "")))
+        shop.drop("m0", "old.gcode", old)
+        shop.wait_until_all_ended(1)
+        shop.drop("m0", "young.gcode", young)
+        shop.wait_until_all_ended(2)
+        shop.kill()
+        database = sqlite3.connect(shop.state / "jobs.sqlite")
+        database.execute("UPDATE job SET ended_s = ended_s - ? WHERE name = 'old.gcode'", [3 * DAY_S])
+        database.commit()
+        database.close()
+        with open(shop.state / "others", "wb", buffering=0) as others, contextlib.suppress(OSError):
+            while others.write(b"x" * 512):
+                pass
+        self.assertIsNotNone(shop.start(), shop.log())
+        shop.wait_for(lambda: all((job["deleted_s"] is None) == (job["name"] == "young.gcode") for job in shop.jobs()))
+        self.assertFalse((shop.state / "jobs/1").exists())
+        self.assertTrue((shop.state / "jobs/2").exists())
+        self.assertIn("is full: the folders of the oldest jobs are deleted", shop.log())
+        shop.drop("m0", "after.gcode", after)
+        shop.wait_until_all_ended(3)
+        shop.check({"old": old, "young": young, "after": after})
+        self.assertEqual(shop.end(), 0)
 
 
 class Clock(Case):
