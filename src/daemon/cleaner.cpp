@@ -48,7 +48,9 @@ Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<ClerkOrder>&
       store_(store),
       clerk_(clerk),
       log_(std::move(log)),
-      measure_(std::move(measure)) {}
+      measure_(std::move(measure)) {
+  for (const std::int64_t id : store.to_delete()) wanted_.insert(id);
+}
 
 void Cleaner::serve(double now_s) {
   now_s_ = now_s;
@@ -164,6 +166,8 @@ void Cleaner::remove(const JobRecord& job) {
       throw Error(Fault::kBusy, title(other) + " is just being filed", "Try again in a moment.");
   left_.erase(job.id);
   wanted_.insert(job.id);
+  unrecorded_.insert(job.id);
+  record();
   order({job});
 }
 
@@ -192,6 +196,7 @@ void Cleaner::on(const Deleted& event) {
     deleting_.erase(id);
     left_.erase(id);
     wanted_.erase(id);
+    unrecorded_.erase(id);
   }
   if (!event.jobs.empty())
     log_(fmt::format("the folders of {} ended jobs were deleted, {} the first", event.jobs.size(),
@@ -209,9 +214,17 @@ void Cleaner::record() {
     while (!gone_.empty()) {
       if (std::optional<JobRecord> job = store_.find(gone_.begin()->first)) {
         job->deleted_s = wall_clock_s();
+        job->to_delete = false;
         store_.save(*job, "its folder was deleted");
       }
       gone_.erase(gone_.begin());
+    }
+    while (!unrecorded_.empty()) {
+      if (std::optional<JobRecord> job = store_.find(*unrecorded_.begin())) {
+        job->to_delete = true;
+        store_.save(*job);
+      }
+      unrecorded_.erase(unrecorded_.begin());
     }
     if (!unwritten_) return;
     store_.remember(kFrom, unwritten_->from_s);

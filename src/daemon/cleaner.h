@@ -53,7 +53,8 @@ class Cleaner {
   // recorded later: folders are deleted where the disk has no room for a record.
   void serve(double now_s);
 
-  // Deletes the folder of a job that has ended, whatever the settings keep. Throws Error{kUsage}
+  // Deletes the folder of a job that has ended, whatever the settings keep. Where that cannot be
+  // done now, it is tried again, by the next daemon too. Throws Error{kUsage}
   // where it has not ended or was deleted, Error{kBusy} where its folder is still needed.
   void remove(const JobRecord& job);
 
@@ -101,6 +102,7 @@ class Cleaner {
   };
   std::map<std::int64_t, Left> left_;  // jobs whose folders could not be deleted
   std::set<std::int64_t> wanted_;      // deleted by somebody, and still there
+  std::set<std::int64_t> unrecorded_;  // among those
   std::optional<Trouble> trouble_;
   double now_s_ = 0;
   double next_s_ = 0;

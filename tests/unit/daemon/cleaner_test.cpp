@@ -173,6 +173,17 @@ TEST_F(Cleaning, GoesOnWhereADaemonDied) {
   EXPECT_GT(shop_.job(old).deleted_s, 0);
 }
 
+TEST_F(Cleaning, AWishOutlivesTheDaemon) {
+  const std::int64_t job = printed(0);
+  EXPECT_TRUE(remove(job).at("ok"));
+  shop_.start();  // before the clerk came to it
+  EXPECT_TRUE(is_there(job));
+  wait();
+  EXPECT_FALSE(is_there(job));
+  EXPECT_GT(shop_.job(job).deleted_s, 0);
+  EXPECT_FALSE(shop_.job(job).to_delete) << "it is done";
+}
+
 TEST_F(Cleaning, AFolderThatStaysKeepsNoOther) {
   const fs::path folder = shop_.folder_.path() / "old";
   fs::create_directories(folder);

@@ -77,5 +77,21 @@ TEST(FullDiskTest, APauseReachesThePrinterAndAResumeOnlyWhereItIsKept) {
   EXPECT_EQ(send.control->take_pause_request(), false);
 }
 
+TEST(FullDiskTest, AWishIsRecordedOnceThereIsRoom) {
+  Workshop shop;
+  shop.drop("sim", "a.stl");
+  shop.tell(PrepareFailed{1, {Fault::kBadInput, "bad", "x"}});
+  shop.run_the_clerk();
+  {
+    const FullDisk full;
+    EXPECT_NO_THROW(shop.foreman_->remove(1)) << "to delete is what helps";
+    EXPECT_FALSE(shop.job(1).to_delete);
+  }
+  shop.foreman_->clean(shop.now_s_ += 60);
+  EXPECT_FALSE(shop.job(1).to_delete) << "the clerk is at it";
+  shop.run_the_clerk();
+  EXPECT_GT(shop.job(1).deleted_s, 0);
+}
+
 }  // namespace
 }  // namespace packmerger
