@@ -5,12 +5,14 @@
 
 #include "base/names.h"
 #include "daemon/move_file.h"
+#include "daemon/progress_file.h"
 #include "daemon/waits.h"
 
 namespace packmerger {
 namespace {
 
 constexpr int kMostPrints = 100;  // that a correction is learned from, the newest
+constexpr int kMostCutShort = 5;  // in a row, of one job
 
 std::string tray_text(const JobRecord& job) {
   return "tray " + std::to_string(job.next_tray) + " of " + std::to_string(job.trays);
@@ -89,14 +91,40 @@ void Foreman::recover() {
 }
 
 void Foreman::recover(JobRecord& job) {
+  if (job.state == JobState::kPreparing) {
+    if (++job.cut_short >= kMostCutShort) return tried_to_death(job, "while it was being prepared");
+    job.state = JobState::kReceived;
+    store_.save(job, "the daemon died while it was being prepared; it is prepared again");
+  }
+  if (job.state == JobState::kSending) recover_sending(job);
   if (job.at_once) drop_order(job);
   if (job.state == JobState::kClaiming) finish_claim(job);
-  if (job.state != JobState::kSending) return;
+}
+
+// What kills the daemon each time would keep everybody else from being printed.
+void Foreman::tried_to_death(JobRecord& job, const char* what) {
+  end(job, JobState::kFailed,
+      "the daemon died " + std::to_string(job.cut_short) + " times in a row " + what,
+      "Look into the messages of the daemon and the system for what ended it (too little memory: "
+      "lower prepare.memory_bytes or prepare.workers), then drop the file again.");
+}
+
+void Foreman::recover_sending(JobRecord& job) {
   const PrinterConfig* printer = config_.printer(job.printer);
-  if (printer != nullptr && printer->hands_over()) {
-    job.state = JobState::kApproved;  // handing over twice gives the same folder
-    if (is_tried_again(job)) return wait_on(job);
-    return store_.save(job, "the daemon was interrupted; handing over again");
+  const bool hands_over = printer != nullptr && printer->hands_over();  // twice: the same folder
+  if (hands_over || has_sent_nothing(told_file(job))) {
+    if (++job.cut_short >= kMostCutShort)
+      return tried_to_death(
+          job, hands_over ? "while it was being handed over" : "before its print began");
+    const PrinterRecord record = with_bed_as_before(job, Fault::kInterrupted);
+    if (!job.reason.empty())  // nothing else gives one to what is being sent
+      return end(job, JobState::kCancelled, "cancelled before the print began", "", "", &record);
+    if (is_tried_again(job)) return wait_on(job, &record);
+    job.state = JobState::kApproved;
+    return store_.save(job,
+                       hands_over ? "the daemon was interrupted; handing over again"
+                                  : "the daemon was interrupted before the print began",
+                       &record);
   }
   note_told(job);
   end(job, JobState::kFailed, with_told(job, "interrupted while printing"),
@@ -176,8 +204,19 @@ std::tuple<bool, std::int64_t, std::int64_t> Foreman::turn_of(const JobRecord& j
 // Thousands may wait to be prepared, and this is asked of each at every turn of the loop.
 bool Foreman::may_step(const JobRecord& job) const {
   if (job.state == JobState::kReceived || job.state == JobState::kPreparing)
-    return is_free(preparer_of(job)) && !preparing_.contains(job.id);
+    return is_free(preparer_of(job)) && !preparing_.contains(job.id) &&
+           !(job.cut_short > 0 && is_suspect_preparing());
   return job.state != JobState::kSending;
+}
+
+// Of those that were being prepared when the daemon died one may be why: never two of them at the
+// same time, so that it takes no other with it again and again.
+bool Foreman::is_suspect_preparing() const {
+  const std::map<std::int64_t, JobRecord>& open = store_.open_jobs();
+  return std::any_of(preparing_.begin(), preparing_.end(), [&](const auto& item) {
+    const auto job = open.find(item.first);
+    return job != open.end() && job->second.cut_short > 0;
+  });
 }
 
 void Foreman::drop_idle_live_jobs() {

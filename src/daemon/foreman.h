@@ -68,7 +68,8 @@ class Foreman {
   Foreman(const DaemonConfig& config, JobStore& store, Crew& crew, Log log);
 
   // Once, at the start: finishes or forgets half-done claims, fails half-sent prints, sends
-  // half-prepared jobs back to be prepared, and lets no order of before start a print.
+  // half-prepared jobs back to be prepared, and those of which nothing was sent yet back to wait,
+  // unless the daemon died at the same job again and again; lets no order of before start a print.
   void recover();
 
   // The one door for files that do not lie in a watched folder: takes upload.file, which is
@@ -163,6 +164,8 @@ class Foreman {
            const std::string& note = {}, const PrinterRecord* printer = nullptr);
 
   void recover(JobRecord& job);
+  void recover_sending(JobRecord& job);
+  void tried_to_death(JobRecord& job, const char* what);
   bool try_for(std::int64_t job, const std::function<void()>& work);
   void fail(std::int64_t job, const std::string& why, const std::string& hint);
   void let_worker_go(std::int64_t job);
@@ -206,7 +209,7 @@ class Foreman {
   void advise(const PrinterConfig& printer);
   void notice_printers();
   void sent(JobRecord job, const SendEnded& event);
-  PrinterRecord with_bed_as_before(const JobRecord& job, const SendEnded& event) const;
+  PrinterRecord with_bed_as_before(const JobRecord& job, Fault why_not_begun) const;
   void not_started(JobRecord job, const SendEnded& event);
   void end_untouched(JobRecord job, const SendEnded& event);
 
@@ -220,6 +223,7 @@ class Foreman {
   ModelOptions model_options(const PrinterConfig& printer, const PrinterConfig* wish,
                              const JobRecord& job) const;
   bool may_step(const JobRecord& job) const;
+  bool is_suspect_preparing() const;
   static Preparer preparer_of(const JobRecord& job);
   bool is_free(Preparer preparer) const;
   double busy_for_s(const PrinterConfig& printer, std::int64_t new_job, double like_s) const;

@@ -70,6 +70,7 @@ void Foreman::on(const Prepared& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   if (job && job->state == JobState::kPreparing) {
     job->state = JobState::kReady;
+    job->cut_short = 0;
     job->trays = event.trays;
     job->estimates = event.estimates;
     job->profile = event.profile;
@@ -90,8 +91,12 @@ void Foreman::on(const Prepared& event) {
 void Foreman::on(const PrepareFailed& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   const bool stopped = stopping_ && event.failure.fault == Fault::kInterrupted;
-  if (job && job->state == JobState::kPreparing && !stopped)
+  if (job && job->state == JobState::kPreparing && stopped) {
+    job->state = JobState::kReceived;  // it waits for the next daemon
+    store_.save_untold(*job);
+  } else if (job && job->state == JobState::kPreparing) {
     end(*job, JobState::kFailed, sentence(event.failure), event.failure.hint);
+  }
   let_worker_go(event.job);
 }
 
@@ -163,6 +168,7 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
   if (live.control && live.control->cancelled() && !live.ended_by_stop)  // in its last moment
     return end(job, JobState::kCancelled, "cancelled: " + note + ", and no further one", "");
   ++job.next_tray;
+  job.cut_short = 0;
   job.state = JobState::kApproved;
   store_.save(job, note);
   live_[job.id].failures = 0;
@@ -171,17 +177,16 @@ void Foreman::sent(JobRecord job, const SendEnded& event) {
 
 // Nothing of ours was printed: the bed is as clear as it was before, unless somebody else is
 // printing: then there will be something on it.
-PrinterRecord Foreman::with_bed_as_before(const JobRecord& job, const SendEnded& event) const {
+PrinterRecord Foreman::with_bed_as_before(const JobRecord& job, Fault why_not_begun) const {
   const PrinterConfig* printer = config_.printer(job.printer);
-  const bool was_clear =
-      printer != nullptr && printer->has_bed() && event.failure.fault != Fault::kBusy;
+  const bool was_clear = printer != nullptr && printer->has_bed() && why_not_begun != Fault::kBusy;
   PrinterRecord record = store_.printer(job.printer);
   record.bed_clear = record.bed_clear || was_clear;
   return record;
 }
 
 void Foreman::end_untouched(JobRecord job, const SendEnded& event) {
-  const PrinterRecord record = with_bed_as_before(job, event);
+  const PrinterRecord record = with_bed_as_before(job, event.failure.fault);
   if (event.outcome == SendOutcome::kFailed)
     return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint, "", &record);
   end(job, JobState::kCancelled, "cancelled before the print began", "", "", &record);

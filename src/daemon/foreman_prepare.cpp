@@ -96,7 +96,7 @@ bool Foreman::is_free(Preparer preparer) const {
 void Foreman::start_preparing(const JobRecord& waiting) {
   const PrinterConfig* printer = config_.printer(waiting.printer);
   const Preparer preparer = preparer_of(waiting);
-  if (printer == nullptr || !is_free(preparer) || preparing_.contains(waiting.id)) return;
+  if (printer == nullptr || !may_step(waiting)) return;
   if (printer->is_auto()) return start_comparing(waiting, *printer);
   JobRecord job = waiting;
   std::vector<std::string> command;

@@ -54,6 +54,7 @@ void forget_what_was_prepared(JobRecord& job) {
   job.trays = 0;
   job.tray_files.clear();
   job.variant.clear();
+  job.cut_short = 0;
   job.approved = job.at_once = job.pays = false;
   job.reason.clear();
   job.hint.clear();
@@ -143,7 +144,8 @@ JobRecord Foreman::cancel(std::int64_t id) {
   if (job.state == JobState::kSending) {
     // the print first: a disk that is full keeps nobody from ending it
     if (running != nullptr && running->control) running->control->cancel();
-    store_.save(job, "cancelling");
+    job.reason = "cancelling";  // for the next daemon, should this one die
+    store_.save(job, job.reason);
     say(job, "cancelling");
     return job;
   }

@@ -54,7 +54,8 @@ void Foreman::wait_on(JobRecord& job, const PrinterRecord* printer) {
 // first try is not told again, also where two take turns.
 void Foreman::not_started(JobRecord job, const SendEnded& event) {
   LiveJob& live = live_[job.id];
-  const PrinterRecord record = with_bed_as_before(job, event);
+  const PrinterRecord record = with_bed_as_before(job, event.failure.fault);
+  job.cut_short = 0;
   if (live.ended_by_stop && job.tries > 0) return wait_on(job, &record);
   job.state = JobState::kApproved;
   job.hint = event.failure.hint;

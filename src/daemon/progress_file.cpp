@@ -19,27 +19,36 @@ std::string record_of(const Told& told) {
   return fmt::format("acknowledged {:012} of {:012}\n", told.done, told.total);
 }
 
+// So long too: on a disk that takes this, the first record finds its place.
+constexpr std::string_view kNothing = "nothing of the program was sent so far   \n";
+
 constexpr std::uint64_t kMostBytes = 4096;
 
 }  // namespace
 
-// What is there stays until the first record covers it.
+// What is there stays until the first record covers it: how far another print of the tray came.
 ProgressFile::ProgressFile(fs::path path)
     : path_(std::move(path)), fd_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644)) {
   if (fd_.get() < 0) fail();
+  std::error_code failed;
+  if (fs::file_size(path_, failed) == 0 && !failed) write(kNothing);
+}
+
+void ProgressFile::write(std::string_view text) const {
+  if (::pwrite(fd_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) fail();
 }
 
 void ProgressFile::acknowledged(std::size_t done, std::size_t total) {
-  if (done != written_.done || total != written_.total) {
+  if (is_first_ || done != written_.done || total != written_.total) {
     written_ = {done, total};
-    const std::string record = record_of(written_);
-    if (::pwrite(fd_.get(), record.data(), record.size(), 0) != static_cast<ssize_t>(record.size()))
-      fail();
+    write(record_of(written_));
     synced_ = false;
   }
   const auto now = std::chrono::steady_clock::now();
-  if (synced_ || now - synced_at_ < std::chrono::seconds(1)) return;
+  if (synced_ || (!is_first_ && now - synced_at_ < std::chrono::seconds(1))) return;
   if (::fdatasync(fd_.get()) != 0) fail();
+  if (is_first_) sync_folder(path_.parent_path());
+  is_first_ = false;
   synced_ = true;
   synced_at_ = now;
 }
@@ -49,6 +58,17 @@ void ProgressFile::fail() const {
       Fault::kCannotWrite,
       "Cannot write how far the print is to " + path_.string() + ": " + std::strerror(errno),
       "Make the folder writable and see that its disk is not full.");
+}
+
+bool has_sent_nothing(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::exists(path, failed)) return !failed;
+  try {
+    const std::string text = read_file(path, kMostBytes);
+    return text.empty() || text.starts_with(kNothing);
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 std::optional<Told> read_told(const fs::path& path) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 
 #include "base/descriptor.h"
 #include "base/files.h"
@@ -16,8 +17,9 @@ struct Told {
   std::size_t total = 0;
 };
 
-// One record, written anew with every acknowledgement. After a crash of this program it is exact;
-// after a power cut it may be a second behind. Used by one thread.
+// One record, written anew with every acknowledgement, the first one before anything is sent. After
+// a crash of this program it is exact; after a power cut it may be a second behind, but the first
+// one is on the disk at once. Used by one thread.
 class ProgressFile {
  public:
   // Makes the file where there is none; its folder is there. Throws Error{kCannotWrite}.
@@ -28,14 +30,19 @@ class ProgressFile {
   void acknowledged(std::size_t done, std::size_t total);
 
  private:
+  void write(std::string_view text) const;
   [[noreturn]] void fail() const;
 
   fs::path path_;
   Descriptor fd_;
   Told written_;
+  bool is_first_ = true;
   bool synced_ = true;
   std::chrono::steady_clock::time_point synced_at_ = std::chrono::steady_clock::now();
 };
+
+// Whether nothing of the program was sent: there is no record, not even one that cannot be read.
+bool has_sent_nothing(const fs::path& path);
 
 // What the file says; nothing where there is none, where it is no such record, or where the print
 // had not begun.

@@ -90,7 +90,9 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
   check_hash(is_document ? sha256_hex_of_file(file) : sha256_hex(program), tray_files, tray, file);
   StreamOptions options = stream_options(profile, job, tray);
   ProgressFile told(told_file);
+  bool is_begun = false;
   options.on_acknowledged = [&](std::size_t done, std::size_t total) {
+    if (!is_begun) return;
     try {
       told.acknowledged(done, total);
     } catch (const Error&) {
@@ -98,9 +100,17 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
       if (done == 0) throw;
     }
   };
+  // Before the first byte is sent: where the record is missing, nothing was.
+  const PrintListener begins = [&](const PrintReport& report) {
+    if (!is_begun && has_begun(report)) {
+      told.acknowledged(report.done, report.total);
+      is_begun = true;
+    }
+    listener(report);
+  };
   if (is_document) {
     const UsbDevice device = find_usb_printer(connected_devices().usb, port, profile.link.usb_ids);
-    return print_usb(*open_usb_port(device, port), file, options, listener, control);
+    return print_usb(*open_usb_port(device, port), file, options, begins, control);
   }
   const bool is_gcode = profile.dialect == Dialect::kGcode;
   is_gcode ? check_gcode(program) : check_x3g(program);
@@ -108,7 +118,7 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
       is_tcp(port) ? port : find_port(connected_serial_ports(), port, profile.link.usb_ids);
   const std::unique_ptr<Port> channel = open_port(at, profile.link.baud);
   const auto print = is_gcode ? print_gcode : print_x3g;
-  print(*channel, program, options, listener, control);
+  print(*channel, program, options, begins, control);
 }
 
 fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::string& name,

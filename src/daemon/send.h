@@ -23,8 +23,8 @@ namespace packmerger {
 //   Error{kIo}           the print failed; Error{kInterrupted} cancelled and stopped.
 // kUnavailable and kBusy are thrown before anything was printed, and so is what is wrong with the
 // program. tray_files: what hash_trays() (job_folder.h) gave when the job was prepared, to which
-// the tray's bytes must be true; empty: not known, nothing is compared. told_file says from the
-// first line on how far the printer was told to go (progress_file.h).
+// the tray's bytes must be true; empty: not known, nothing is compared. told_file says from
+// before the first line on how far the printer was told to go (progress_file.h).
 void send_tray(const fs::path& job_folder, int tray, const std::string& port,
                const fs::path& told_file, const PrintListener& listener, PrintControl& control,
                const std::string& tray_files = {});

@@ -77,7 +77,7 @@ TEST(ChildJson, WhateverIsThrownFailsTheJobAndNotTheDaemon) {
 
 TEST(ChildJson, AToldFileOfAnyKindKeepsNoDaemonFromStarting) {
   for (const std::string& text :
-       {std::string(5000, 'x'), std::string("acknowledged 9 of 3\n"), std::string()}) {
+       {std::string(5000, 'x'), std::string("acknowledged 9 of 3\n"), std::string("\n")}) {
     Workshop shop;
     shop.drop("sim", "a.stl");
     shop.prepare(*shop.prepare_order());

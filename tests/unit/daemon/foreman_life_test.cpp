@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "daemon/progress_file.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -136,8 +137,16 @@ class RandomLife {
   }
 
   void kill() {
-    for (const auto& [name, order] : sending_)
-      if (name != "hand") printed_.insert({order.job, order.tray});
+    for (const auto& [name, order] : sending_) {
+      if (name == "hand") continue;
+      const bool is_begun = random_.below(2) == 0;
+      if (is_begun) {
+        ProgressFile(order.told_file).acknowledged(0, 10);  // before the first byte
+        printed_.insert({order.job, order.tray});
+      } else {
+        clear_.insert(name);
+      }
+    }
     preparing_.reset();
     sending_.clear();
     shop_.start();

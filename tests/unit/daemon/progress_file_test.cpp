@@ -13,8 +13,10 @@ TEST(ProgressFile, HoldsTheLastRecordAlone) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "sent-1.progress";
   EXPECT_FALSE(read_told(path));
+  EXPECT_TRUE(has_sent_nothing(path));
   ProgressFile file(path);
   EXPECT_FALSE(read_told(path)) << "nothing was acknowledged";
+  EXPECT_TRUE(has_sent_nothing(path));
   for (const std::size_t done : {0u, 7u, 123456u, 4u}) {
     file.acknowledged(done, 200000);
     const std::optional<Told> told = read_told(path);
@@ -22,6 +24,7 @@ TEST(ProgressFile, HoldsTheLastRecordAlone) {
     EXPECT_EQ(told->done, done);
     EXPECT_EQ(told->total, 200000u);
     EXPECT_LT(fs::file_size(path), 64u);
+    EXPECT_FALSE(has_sent_nothing(path));
   }
   // The next print covers it as soon as it begins, not before.
   ProgressFile next(path);
@@ -35,6 +38,7 @@ TEST(ProgressFile, WhatIsNoRecordTellsNothing) {
   const fs::path path = folder.path() / "sent-1.progress";
   std::ofstream(path) << "acknowledged twelve";
   EXPECT_FALSE(read_told(path));
+  EXPECT_FALSE(has_sent_nothing(path)) << "nobody knows";
 }
 
 TEST(ProgressFile, AFolderThatIsNotThereIsTold) {
