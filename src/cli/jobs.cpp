@@ -51,7 +51,7 @@ void tell_storage(const Arguments& arguments) {
   if (const json announced = storage.value("announced", json()); announced.is_object())
     fmt::print(stderr,
                "From {} on the folders of {} ended jobs are deleted (keep_days = {}, keep_jobs = "
-               "{}); set these to 0 to keep them all.\n",
+               "{}); set these to 0 to keep them as long as there is room.\n",
                time_text(announced.at("from_s")), announced.value("jobs", 0),
                storage.value("keep_days", 0), storage.value("keep_jobs", 0));
 }

@@ -86,14 +86,14 @@ void Cleaner::add_wanted(std::vector<JobRecord>& jobs) const {
   }
 }
 
-// An upload of the largest kind must find its place, on a small disk one of a tenth of it.
+// An upload of the largest kind must find its place; half of a disk is enough for it.
 void Cleaner::look_at_room() {
   room_.reset();
   const std::optional<DiskSpace> disk = measure_(config_.state);
   if (!disk) return;
   room_ = Room{disk->free_bytes,
                std::max(kLeastWanted,
-                        std::min(kLeastWanted + config_.web.most_upload_bytes, disk->bytes / 10))};
+                        std::min(kLeastWanted + config_.web.most_upload_bytes, disk->bytes / 2))};
   if (room_->is_low() && !told_low_)
     log_(fmt::format("the disk with {} has only {:.1f} GiB left{}", config_.state.string(),
                      gib(room_->free_bytes),
@@ -133,7 +133,7 @@ void Cleaner::announce(double from_s, double wall_s) {
   if (announced.jobs > 0 && !told_announced_)
     log_(fmt::format(
         "from {} on the folders of {} ended jobs are deleted (keep_days = {}, keep_jobs = {}); set "
-        "these to 0 to keep them all",
+        "these to 0 to keep them as long as there is room",
         day(from_s), announced.jobs, config_.keep_days, config_.keep_jobs));
   told_announced_ = told_announced_ || announced.jobs > 0;
 }

@@ -37,7 +37,7 @@ void read_top(TableReader& reader, const fs::path& file, DaemonConfig& config) {
     config.socket_mode = text == "0660" ? 0660 : 0600;
     return text == "0600" || text == "0660";
   });
-  reader.integer("keep_days", 0, 36500, "an integer from 0 (for ever) to 36500 (days)",
+  reader.integer("keep_days", 0, 36500, "an integer from 0 (as long as there is room) to 36500 (days)",
                  [&](std::int64_t value) { config.keep_days = static_cast<int>(value); });
   reader.integer("keep_jobs", 0, 1000000, "an integer from 0 (all) to 1000000",
                  [&](std::int64_t value) { config.keep_jobs = static_cast<int>(value); });

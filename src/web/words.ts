@@ -156,7 +156,7 @@ export function startInWords({ job, name, printer, tray, trays, time_s, doubt }:
 export function storageInWords({ free_bytes, low, announced, keep_days, keep_jobs }: Storage): string {
   return [
     low && free_bytes !== null ? `The daemon’s disk has only ${bytes(free_bytes)} left. Make room, or delete the files of jobs that are not needed.` : '',
-    announced ? `From ${when(announced.from_s)} on the files of ${count(announced.jobs, 'ended job')} are deleted (keep_days = ${keep_days}, keep_jobs = ${keep_jobs}). Set these to 0 in the settings to keep them all.` : '',
+    announced ? `From ${when(announced.from_s)} on the files of ${count(announced.jobs, 'ended job')} are deleted (keep_days = ${keep_days}, keep_jobs = ${keep_jobs}). Set these to 0 in the settings to keep them as long as there is room.` : '',
   ].filter(Boolean).join(' ');
 }
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "http/server.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -120,6 +121,22 @@ TEST_F(Cleaning, TheOldestGoWhereTheDiskGetsFullButNoneOfTheLastDay) {
   EXPECT_THAT(std::get<DeleteOrder>(*order).jobs, testing::ElementsAre(old));
   cleaner.on(Deleted{{old}, {}, {}});
   EXPECT_FALSE(look(1.4)) << "job " << new_one << " ended today";
+}
+
+// Old jobs are never why an upload that the settings allow finds no room, on a small disk either.
+TEST_F(Cleaning, TheLargestUploadFindsRoomOnASmallDisk) {
+  printed(3);
+  shop_.config_.keep_jobs = shop_.config_.keep_days = 0;
+  shop_.config_.web.most_upload_bytes = std::uint64_t{1} << 30;
+  Queue<ClerkOrder> clerk;
+  const DiskSpace disk{std::uint64_t{8} << 30, std::uint64_t{5} << 28};
+  Cleaner cleaner(
+      shop_.config_, *shop_.store_, clerk, [](const std::string&) {},
+      [&](const fs::path&) { return disk; });
+  cleaner.serve(60);
+  EXPECT_TRUE(clerk.try_pop());
+  EXPECT_GE(cleaner.room()->wanted_bytes,
+            HttpLimits{}.spare_bytes + shop_.config_.web.most_upload_bytes);
 }
 
 TEST_F(Cleaning, AJobPrintedAgainNeedsTheFolder) {
