@@ -84,7 +84,10 @@ TEST_F(ServiceTest, IsReadyOnlyAfterRecovery) {
   NotifySocket systemd(path("notify"));
   start();
   drop("m", "long.stl");
-  ASSERT_TRUE(reaches(1, "sending"));
+  ASSERT_TRUE(wait_until([&] {
+    const json progress = job(1).at("progress");
+    return progress.is_object() && progress.value("done", 0) > 0;
+  }));
   end(SIGKILL);
   const std::size_t before = systemd.count("READY=1");
   start();
