@@ -84,9 +84,8 @@ TEST_F(ServiceTest, IsReadyOnlyAfterRecovery) {
   NotifySocket systemd(path("notify"));
   start();
   drop("m", "long.stl");
-  ASSERT_TRUE(wait_until([&] {
-    const json progress = job(1).at("progress");
-    return progress.is_object() && progress.value("done", 0) > 0;
+  ASSERT_TRUE(wait_until([&] {  // what was not begun would wait
+    return job(1)["progress"].is_object() && job(1)["progress"].value("done", 0) > 2;
   }));
   end(SIGKILL);
   const std::size_t before = systemd.count("READY=1");
