@@ -84,8 +84,10 @@ TEST_F(ServiceTest, IsReadyOnlyAfterRecovery) {
   NotifySocket systemd(path("notify"));
   start();
   drop("m", "long.stl");
+  ASSERT_TRUE(reaches(1, "sending"));
   ASSERT_TRUE(wait_until([&] {  // what was not begun would wait
-    return job(1)["progress"].is_object() && job(1)["progress"].value("done", 0) > 2;
+    const json progress = job(1).value("progress", json());
+    return progress.is_object() && progress.value("stage", "connecting") != "connecting";
   }));
   end(SIGKILL);
   const std::size_t before = systemd.count("READY=1");
