@@ -23,7 +23,8 @@ namespace {
 
 constexpr double kTimeoutS = 3600;
 constexpr std::uint64_t kMaxGcodeBytes = std::uint64_t{4} << 30;
-constexpr double kOutsideMm = 0.01;  // what rounding may put a part outside by
+constexpr std::size_t kMostSaid = 2000;  // bytes of what the slicer said that are passed on
+constexpr double kOutsideMm = 0.01;      // what rounding may put a part outside by
 
 // All shells as one STL, in the machine's own coordinates.
 std::string stl_of(const Tray& tray, const Vec3& shift) {
@@ -73,6 +74,32 @@ std::string_view after(std::string_view gcode, std::string_view label) {
   return rest.substr(0, rest.find('\n'));
 }
 
+// What ended the slicer says nothing of the tray: it is no refusal.
+void check_that_it_ran(const ProcessResult& result) {
+  const auto ended = [](const std::string& how, const char* hint) {
+    throw Error(Fault::kIo, "PrusaSlicer did not come to an end: " + how, hint);
+  };
+  constexpr const char* kAgain =
+      "Try again; if it happens again, slice the model by hand to see why.";
+  constexpr const char* kRoom = "Free memory and disk space, then try again.";
+  const auto says = [&](const char* words) {
+    return result.err.find(words) != std::string::npos ||
+           result.out.find(words) != std::string::npos;
+  };
+  if (result.timed_out) ended(fmt::format("it took longer than {:.0f} s", kTimeoutS), kAgain);
+  if (says("bad_alloc") || says("out of memory") || says("No space left"))
+    ended("it ran out of memory or disk", kRoom);
+  if (result.status.signal != 0)
+    ended(fmt::format("it was ended by signal {}", result.status.signal), kAgain);
+  if (result.status.could_not_start())
+    ended("it cannot be started", "Run prusa-slicer --help to see why.");
+}
+
+// The end of what was said: there stands why.
+std::string shortened(const std::string& said) {
+  return "… " + said.substr(said.size() - kMostSaid);
+}
+
 void run_slicer(const fs::path& folder, const Progress& progress) {
   ProcessSpec spec;
   spec.argv = {"prusa-slicer",   "-g", "--load",     "settings.ini",
@@ -89,14 +116,13 @@ void run_slicer(const fs::path& folder, const Progress& progress) {
                 "Run: apt-get install --no-install-recommends prusa-slicer");
   }
   if (result.status.ok() && fs::exists(folder / "tray.gcode")) return;
+  if (!result.status.ok()) check_that_it_ran(result);
   std::string said = result.err.empty() ? result.out : result.err;
+  if (said.size() > kMostSaid) said = shortened(said);
   while (!said.empty() &&
          (std::isspace(static_cast<unsigned char>(said.back())) != 0 || said.back() == '.'))
     said.pop_back();
   std::replace(said.begin(), said.end(), '\n', ' ');
-  if (result.timed_out) said = fmt::format("it took longer than {:.0f} s", kTimeoutS);
-  if (said.empty() && result.status.signal != 0)
-    said = fmt::format("it was ended by signal {}", result.status.signal);
   const bool settings = said.find("config") != std::string::npos ||
                         said.find("nvalid value") != std::string::npos ||
                         said.find("custom G-code") != std::string::npos ||

@@ -32,6 +32,8 @@ struct ExitStatus {
   int code = 0;    // exit code, when signal == 0
   int signal = 0;  // the signal that ended it, or 0
   bool ok() const { return code == 0 && signal == 0; }
+  // As shells and the loader of shared libraries tell it: nothing of the program ran.
+  bool could_not_start() const { return signal == 0 && (code == 126 || code == 127); }
 };
 
 // Sends signal to a process group of the caller's session, which a confined caller may do too.

@@ -46,7 +46,8 @@ void check_variant(const JobRecord& job, const std::string& variant) {
   const Variant way = *variant_named(variant);
   if (ways && !estimate_of(*ways, way))
     throw Error(Fault::kUsage, title(job) + ": " + printable(why_not(*ways, way)),
-                "packmerger jobs show tells which ways fit and can be made.");
+                "packmerger jobs show tells which ways fit; packmerger jobs prepare without one "
+                "compares them anew.");
 }
 
 // Nor does what somebody approved count any more. Its figures stay until there are new ones.

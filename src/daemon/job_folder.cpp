@@ -58,6 +58,14 @@ std::string doubt_about_packing(const Estimate& packed, const Estimate& other,
   return packed.parts == 1 ? doubt : printed + " it costs as little";
 }
 
+// The cheapest of what is left need not be the cheapest: a person decides.
+std::string doubt_about_refused(const Comparison& ways) {
+  for (const Variant way : {Variant::kPacked, Variant::kHollow, Variant::kSolid})
+    if (const auto refused = ways.refused.find(variant_name(way)); refused != ways.refused.end())
+      return std::string(variant_name(way)) + " could not be compared: " + refused->second.what;
+  return {};
+}
+
 }  // namespace
 
 PreparedJob read_prepared(const fs::path& folder) {
@@ -105,6 +113,7 @@ std::string doubt_about(const PreparedJob& job) {
   if (!ways || !own || !estimate_of(*ways, *own))
     return "prepared " + job.variant + ": what it costs is not known";
   const Estimate& prepared = *estimate_of(*ways, *own);
+  if (const std::string unknown = doubt_about_refused(*ways); !unknown.empty()) return unknown;
   const Variant best = *cheapest(*ways);
   if (best == *own) return {};
   const Estimate& other = *estimate_of(*ways, best);

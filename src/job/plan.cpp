@@ -102,6 +102,15 @@ void compare_ways(Plan& plan, std::optional<Arrangement> as_is, WholePieces piec
     compared.packed_apart = prefer_cheaper(packed, plan.hollow, comparison.hollow, comparison);
 }
 
+// Why, where every way is refused: there is nothing to compare.
+std::optional<Refusal> none_can_be_made(const Plan& plan) {
+  const Comparison& ways = plan.job.estimates;
+  if (ways.refused.empty() || ways.as_is || ways.solid || ways.hollow || ways.packed)
+    return std::nullopt;
+  const auto solid = ways.refused.find("solid");
+  return (solid == ways.refused.end() ? ways.refused.begin() : solid)->second;
+}
+
 void drop_repeated(Warnings& warnings) {
   Warnings once;
   for (const Warning& warning : warnings) {
@@ -165,6 +174,9 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
     compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), whole_pieces(models, options),
                  profile, progress);
   });
+
+  if (const auto none = none_can_be_made(plan))
+    throw Error(Fault::kBadInput, none->what, none->hint);
 
   drop_repeated(warnings);
   plan.job.compared.sha256 = comparison_sha256(profile, options, plan.job.inputs);

@@ -119,7 +119,9 @@ std::optional<Plan> plan_known(const Profile& profile, const PlanOptions& option
   const Variant variant =
       wanted == Variant::kCheapest ? cheapest(known.estimates).value_or(Variant::kPacked) : wanted;
   const bool is_timed = options.budget_s > 0 && variant == Variant::kPacked;
-  if (is_timed || !is_of(known, profile, options)) return std::nullopt;
+  // what could not be made then is tried again
+  if (is_timed || !known.estimates.refused.empty() || !is_of(known, profile, options))
+    return std::nullopt;
   Plan plan;
   plan.job.profile = profile;
   plan.job.seed = options.seed;

@@ -97,6 +97,9 @@ TetgenRun run_tetgen(const TetgenInput& input, const Progress& progress) {
   spec.argv = {helper_program("packmerger-tetgen").string(), from.string(), to.string()};
   spec.max_memory_bytes = kMaxMemoryBytes;
   const ProcessResult result = run_process(spec, kTimeout_s, progress);
+  if (result.status.could_not_start())
+    throw Error(Fault::kUnavailable, "packmerger-tetgen cannot be started",
+                "Install PackMerger again; packmerger-tetgen alone tells what it lacks.");
   if (!result.status.ok() || !fs::exists(to)) return {std::nullopt, result.timed_out};
   return {read_tetgen_output(to)};
 }

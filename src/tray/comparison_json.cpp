@@ -59,6 +59,12 @@ std::optional<Estimate> estimate_of(const Json& ways, const char* way) {
   return estimate;
 }
 
+// Another program's file may hold null.
+std::string text_or_none(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
 }  // namespace
 
 Json comparison_json(const Comparison& comparison) {
@@ -80,8 +86,8 @@ Comparison comparison_of(const Json& json) {
   comparison.packed = estimate_of(json, "packed");
   for (const char* way : {"as_is", "solid", "hollow", "packed"})
     if (const auto found = json.find(way);
-        found != json.end() && found->contains("reason") && !found->at("reason").is_null())
-      comparison.refused[way] = {found->at("reason"), found->value("hint", "")};
+        found != json.end() && found->contains("reason") && found->at("reason").is_string())
+      comparison.refused[way] = {found->at("reason"), text_or_none(*found, "hint")};
   return comparison;
 }
 

@@ -110,6 +110,11 @@ TEST(Doubt, NoneWherePackingIsCheaperThanEveryOtherWayThatFits) {
   EXPECT_TRUE(pays(solid_at("4"), "solid")) << "the cheapest way";
   EXPECT_TRUE(pays(
       R"({"packed": {"fits": true, "time_s": 1, "cost": 5}, "solid": {"fits": false}})", "packed"));
+  EXPECT_FALSE(pays(R"({"packed": {"fits": true, "time_s": 1, "cost": 5},
+                        "hollow": {"fits": false, "reason": "it cannot be sliced", "hint": "Turn it."},
+                        "solid": {"fits": true, "time_s": 1, "cost": 8}})",
+                    "packed"))
+      << "hollow might cost less";
   for (const char* text : {"", "[]", "{}", R"({"packed": null})", R"({"packed": {"fits": true}})"})
     EXPECT_FALSE(pays(text, "packed")) << text;
 }

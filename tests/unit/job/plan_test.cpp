@@ -69,5 +69,20 @@ TEST_F(RefusedWays, WhatCannotBeHollowedIsComparedSolid) {
   EXPECT_EQ(refusal(profile, options, Variant::kCheapest), "");
 }
 
+TEST_F(RefusedWays, WhereNoWayCanBeMadeItIsSaidAtOnce) {
+  TriangleSoup soup;  // as no way up of a needle of 0.1 mm can be sliced
+  soup.points = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+  soup.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  PlanOptions options = options_of(soup);
+  options.split = options.hollow = false;
+  try {
+    plan(read_profile("marlin"), options, Progress());
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault(), Fault::kBadInput);
+    EXPECT_FALSE(error.hint().empty());
+  }
+}
+
 }  // namespace
 }  // namespace packmerger

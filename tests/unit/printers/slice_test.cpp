@@ -232,6 +232,29 @@ TEST(Slice, MissingSlicerIsSaidWithItsInstallLine) {
   ::setenv("PATH", saved.c_str(), 1);
 }
 
+// What ends the slicer says nothing of the model; what the slicer says does.
+TEST(Slice, ASlicerThatDiesRefusesNothing) {
+  const TemporaryFolder folder;
+  const char* path = std::getenv("PATH");
+  const std::string saved = path != nullptr ? path : "";
+  ::setenv("PATH", (folder.path().string() + ":" + saved).c_str(), 1);
+  const auto ending = [&](const std::string& script) {
+    const fs::path slicer = folder.path() / "prusa-slicer";
+    write_file_whole(slicer, "#!/bin/sh\n" + script + "\n");
+    fs::permissions(slicer, fs::perms::owner_all);
+    return error_of([&] { figures(replicator(), {box(Vec3(20, 60, 0), Vec3(30, 70, 5))}); });
+  };
+  EXPECT_EQ(ending("echo Slicing; kill -9 $$").first, Fault::kIo);
+  EXPECT_EQ(ending("echo std::bad_alloc >&2; exit 1").first, Fault::kIo);
+  EXPECT_EQ(ending("exit 127").first, Fault::kIo);
+  EXPECT_EQ(ending("echo 'There are no extrusions in the first layer.' >&2; exit 1").first,
+            Fault::kBadInput);
+  const auto [fault, text] = ending("yes trouble | head -n 100000 >&2; exit 1");
+  EXPECT_EQ(fault, Fault::kBadInput);
+  EXPECT_LT(text.size(), 3000U);
+  ::setenv("PATH", saved.c_str(), 1);
+}
+
 TEST(Slice, CanBeInterrupted) {
   const std::atomic<bool> cancelled{true};
   EXPECT_THROW(slice(replicator(), small_cube(), SliceFlavour::kFigures, Progress({}, &cancelled)),
