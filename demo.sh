@@ -141,10 +141,10 @@ cat <<EOF
                 your model    $(fields 2 filed)
 EOF
 if [ "${1:-}" = web ]; then
+  trap "exit 0" INT
   say "The page: $(packmerger keys link 2>/dev/null)"
   echo "  That link is good once, within 15 minutes, and lets a browser look."
   echo "  The key for whatever changes something: $(packmerger keys add demo 2>/dev/null)"
   echo "  Ctrl-C ends it."
-  trap "exit 0" INT
   wait "$daemon"
 fi
