@@ -47,30 +47,40 @@ bool has_any(const std::string& line, const std::array<std::string_view, N>& tex
                      [&](std::string_view text) { return has(line, text); });
 }
 
-// In an error line, in small letters: the firmwares' own words for having stopped. M999 starts a
-// stopped Marlin or Repetier again.
+// In an error line, in small letters: the firmwares' own words for having stopped, or for a print
+// that goes on without heat. M999 starts a stopped Marlin, Repetier or Smoothieware again. Who says
+// what is in docs/PROTOCOLS.
 bool tells_stop(const std::string& line) {
-  static constexpr std::array<std::string_view, 8> kTexts = {
-      "halted",      "stopped",         "stop called", "kill() called",
-      "kill caused", "watchdog barked", "m999",        "shutdown"};
+  static constexpr std::array<std::string_view, 9> kTexts = {
+      "halted",          "stopped", "stop called", "kill() called", "kill caused",
+      "watchdog barked", "m999",    "shutdown",    "dry run mode"};
   return has_any(line, kTexts);
 }
 
 bool tells_heater_failure(const std::string& line) {
-  static constexpr std::array<std::string_view, 7> kTexts = {
-      "heating failed",    "thermal runaway",   "thermal malfunction",    "heater/sensor error",
-      "maxtemp triggered", "mintemp triggered", "invalid extruder number"};
-  return has_any(line, kTexts);
+  static constexpr std::array<std::string_view, 10> kTexts = {
+      "heating failed",      "thermal runaway",         "thermal malfunction", "maxtemp triggered",
+      "mintemp triggered",   "invalid extruder number", "heater decoupled",    "seems decoupled",
+      "heater/sensor error", "temp sensor defect"};
+  // RepRapFirmware: "Heater 1 fault: ...", "Heating fault on heater 1, ...".
+  return has_any(line, kTexts) || (has(line, "heater") && has(line, " fault"));
 }
 
 // What a stopped printer says without the mark of an error: Marlin to every move that it refuses,
-// Klipper once, the moment that it shuts down or restarts. What Klipper is busy with is never
-// answered then.
+// old ones of their heaters, Klipper once, the moment that it shuts down or restarts, Smoothieware
+// behind its cause, Repetier of each heater. What Klipper is busy with is never answered then.
+// Messages of the program (M117, M118) begin with "echo:" or "//" where they are told at all.
 bool tells_stop_plainly(std::string_view line) {
-  return line.starts_with("Printer stopped due to errors") ||
-         line.starts_with("echo:Printer stopped due to errors") ||
-         line.starts_with("// Klipper state: Shutdown") ||
-         line.starts_with("// Klipper state: Disconnect");
+  static constexpr std::array<std::string_view, 4> kBeginnings = {
+      "Printer stopped due to errors", "echo:Printer stopped due to errors",
+      "// Klipper state: Shutdown", "// Klipper state: Disconnect"};
+  static constexpr std::array<std::string_view, 5> kTexts = {
+      "disabling all heaters", ": temp sensor defect", "temp triggered", "reset or m999",
+      "m999 or $x"};
+  if (std::any_of(kBeginnings.begin(), kBeginnings.end(),
+                  [&](std::string_view text) { return line.starts_with(text); }))
+    return true;
+  return !line.starts_with("echo:") && !line.starts_with("//") && has_any(lower(line), kTexts);
 }
 
 // Lines that say that something is wrong; false for others.
@@ -200,6 +210,11 @@ bool read_by_prefix(std::string_view line, GcodeReply& reply) {
     reply.kind = GcodeReplyKind::kIdle;
   } else if (line.starts_with("//") && trim(line.substr(2)).starts_with(kAction)) {
     read_action(trim(line.substr(2)).substr(kAction.size()), reply);
+  } else if (line == "RequestPause:" || line == "RequestContinue:" || line == "RequestStop:") {
+    // Repetier's own words for pause, resume and cancel.
+    reply.kind = line == "RequestPause:"  ? GcodeReplyKind::kPause
+                 : line == "RequestStop:" ? GcodeReplyKind::kCancel
+                                          : GcodeReplyKind::kResume;
   } else if (line.starts_with("Cap:")) {
     reply.kind = GcodeReplyKind::kCapability;
     reply.text = line.substr(4);

@@ -56,6 +56,8 @@ INSTANTIATE_TEST_SUITE_P(
         Complaint{"Errxr:chec\xFFsum\nResend: 7\nok\n", ""},
         Complaint{"Error:Probing Failed\nok\n", ""},
         Complaint{"// Klipper state: Ready\nok\n", ""},  // somebody asked it for its STATUS
+        Complaint{"Error:default heater of tool 1 is off\nok\n", ""},
+        Complaint{"echo:Disabling all heaters\nok\n", ""},  // a message of the program's own
         // not
         Complaint{"Error:Printer halted. kill() called!\n", "kill() called!"},
         Complaint{"Error:!! STOP called because of unhomed error - restart with M999\nok\n",
@@ -65,7 +67,42 @@ INSTANTIATE_TEST_SUITE_P(
         Complaint{"// Klipper state: Shutdown\n", "Klipper state: Shutdown"},
         Complaint{"// Klipper state: Disconnect\n", "Klipper state: Disconnect"},
         Complaint{"Error:Heating failed, system stopped! Heater_ID: 0\n",
-                  "A heater of the printer"}));
+                  "A heater of the printer"},
+        // Repetier, which says ok to every line that follows
+        Complaint{
+            "Error:One heater seems decoupled from thermistor - disabling all for safety!\nok\n",
+            "A heater of the printer failed: Error:One heater seems decoupled"},
+        Complaint{"Error:Heater decoupled\nok\n", "A heater of the printer"},
+        Complaint{"Error:Printer set into dry run mode until restart!\nok\n", "dry run mode"},
+        Complaint{"extruder 0: temp sensor defect marked defect\nok\n",
+                  "A heater of the printer failed: extruder 0: temp sensor defect"},
+        Complaint{"Disabling all heaters due to detected sensor defect.\nok\n",
+                  "Disabling all heaters"},
+        // RepRapFirmware
+        Complaint{"Error: Heater 1 fault: temperature excursion exceeded 15.0C\nok\n",
+                  "A heater of the printer failed: Error: Heater 1 fault"},
+        Complaint{"Error: Heating fault on heater 1, temperature rising much more slowly than the "
+                  "expected 1.5C/sec\nok\n",
+                  "A heater of the printer"},
+        Complaint{"Error: Temperature reading fault on heater 0: sensor open circuit\nok\n",
+                  "A heater of the printer"},
+        // Smoothieware, and old Marlin without its stop
+        Complaint{"ERROR: MINTEMP or MAXTEMP triggered. Check your temperature sensors!\nok\n",
+                  "A heater of the printer"},
+        Complaint{"HALT asserted - reset or M999 required\nok\n", "HALT asserted"},
+        Complaint{"Error:0\n: Extruder switched off. MAXTEMP triggered !\nok\n",
+                  "A heater of the printer failed: : Extruder switched off"}));
+
+// Repetier's own words, beside or instead of "// action:cancel".
+TEST(Requests, OfRepetierAreHeard) {
+  EXPECT_EQ(read_gcode_reply("RequestPause:").kind, GcodeReplyKind::kPause);
+  EXPECT_EQ(read_gcode_reply("RequestContinue:\r").kind, GcodeReplyKind::kResume);
+  std::vector<std::string> executed;
+  const auto failure = print_with_answer("RequestStop:\n// action:cancel\nok\n", executed);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), HasSubstr("cancelled at the printer"));
+  EXPECT_THAT(executed, ::testing::Not(::testing::Contains(HasSubstr("G1 X20.5"))));
+}
 
 // Klipper names the cause of its shutdown only to the commands that it refuses.
 TEST(Shutdown, IsToldWithItsCause) {
