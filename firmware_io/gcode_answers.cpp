@@ -57,9 +57,10 @@ void GcodeStream::handle_ok(const GcodeReply& reply) {
   }
   const Given given = unanswered_[answered];
   const auto behind = unanswered_.begin() + static_cast<std::ptrdiff_t>(answered);
-  const bool lost =
-      std::any_of(unanswered_.begin(), behind, [](const Given& g) { return g.number > 0; });
+  const auto is_line = [](const Given& g) { return g.number > 0; };
+  const bool lost = std::any_of(unanswered_.begin(), behind, is_line);
   unanswered_.erase(unanswered_.begin(), behind + 1);
+  if (std::none_of(unanswered_.begin(), unanswered_.end(), is_line)) settle_complaint(lost);
   if (given.asks_temperatures) {
     // Answers come in order, so whatever was still owed got lost, but not a line that was given
     // behind the question.

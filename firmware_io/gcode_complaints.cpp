@@ -14,6 +14,21 @@ void GcodeStream::handle_error(const GcodeReply& reply) {
   complained_at_s_ = channel_.now_s();
 }
 
+// By an ok behind which no line is open any more. line_unanswered: it answers what was asked behind
+// a line that got none of its own, and no ok to a question makes an error line harmless. One that
+// came after an empty line may be for that instead (settle_doubt() finds out).
+void GcodeStream::settle_complaint(bool line_unanswered) {
+  if (complaint_.empty()) return;
+  if (line_unanswered && !resend_ && !cancelling_) fail_unanswered();
+  if (!was_silent_ || line_count_ == LineCount::kKept || cancelling_) complaint_.clear();
+}
+
+void GcodeStream::fail_unanswered() const {
+  fail("The printer said \"" + complaint_ + "\", and neither that it has executed what it was " +
+           "sent then nor that it wants it again",
+       "Find out why, switch the printer off and on, then print the job again.");
+}
+
 void GcodeStream::fail_in_silence() const {
   if (!complaint_.empty())
     fail("The printer said \"" + complaint_ + "\" and has not answered since",

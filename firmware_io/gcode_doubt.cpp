@@ -29,10 +29,14 @@ std::optional<std::size_t> GcodeStream::settle_doubt() {
   const bool answered = tally_.proves_line(temperatures_in_ok_);
   if (answered && !in_doubt_ && tally_.is_complete(temperatures_in_ok_)) {
     was_silent_ = taken_for_granted_ = false;
+    complaint_.clear();
     return std::nullopt;
   }
   std::optional<std::size_t> again = learn_line_count();
   const bool counts = line_count_ == LineCount::kKept;
+  // Only one that counts none answers an empty line, so that the ok was perhaps not the line's.
+  if (counts || answered) complaint_.clear();
+  if (!again && !complaint_.empty() && !cancelling_) fail_unanswered();
   // One that says nothing to the probe may be either.
   if (!again && !counts && !cancelling_ && (line_count_ == LineCount::kIgnored || !answered))
     again = prove_by_position(answered);

@@ -135,11 +135,13 @@ bool GcodeStream::may_pause_before(std::size_t number) const {
          !between_;
 }
 
-// Within the window, and never behind a command that blocks or any trouble. Marlin queues four
+// Within the window, and never behind a command that blocks or any trouble: which line an error is
+// about is seen only where none is given behind it. Marlin queues four
 // lines and reads no further: so few are given that a cancel is read at once.
 bool GcodeStream::may_give_another() const {
   const std::size_t next = last_ + 1;
-  const bool calm = !resend_ && !m105_behind_ && !cancelling_ && !paused_ && !between_;
+  const bool calm =
+      !resend_ && !m105_behind_ && !cancelling_ && !paused_ && !between_ && complaint_.empty();
   if (options_.window_bytes == 0 || line_count_ != LineCount::kKept || !calm ||
       next < careful_until_ || next > commands_.size() || unanswered_.size() >= kMostLines ||
       blocks(command(open_)) || blocks(command(next)))
@@ -199,7 +201,6 @@ void GcodeStream::handle(const GcodeReply& reply) {
   if (proves_life(reply)) alive_at_s_ = channel_.now_s();
   switch (reply.kind) {
     case GcodeReplyKind::kOk:
-      complaint_.clear();
       if (reply.has_position) hear_position(reply);
       heed_probe(reply);
       handle_ok(reply);

@@ -115,6 +115,8 @@ class GcodeStream {
 
   // gcode_complaints.cpp: what the machine finds fault with
   void handle_error(const GcodeReply& reply);
+  void settle_complaint(bool line_unanswered);
+  [[noreturn]] void fail_unanswered() const;
   [[noreturn]] void fail_in_silence() const;
   void handle_unknown(const std::string& word);
   std::string printing_text() const;

@@ -136,6 +136,93 @@ TEST(GarbledHalt, IsToldOnceNothingFollows) {
   EXPECT_LT(port.now_s(), 40);
 }
 
+// A machine that complains of a line, never says ok to it, and answers everything else. Where
+// `counts`, it refuses lines that do not follow; else it answers empty lines too.
+class Complainer : public simulated::Firmware {
+ public:
+  Complainer(bool counts, std::string complaint) : counts_(counts), complaint_(complaint) {}
+
+  void receive(std::string_view bytes, double) override {
+    for (const char c : bytes) {
+      if (c != '\n') {
+        line_ += c;
+        continue;
+      }
+      answer();
+      line_.clear();
+    }
+  }
+  void advance(double) override {}
+  double next_event_s() const override { return simulated::kNever; }
+
+ private:
+  void answer() {
+    const std::string command = command_of(line_);
+    const std::size_t number = line_.starts_with("N") ? std::stoul(line_.substr(1)) : 0;
+    if (command == "M110 N0") last_ = 0;
+    if (counts_ && number > 0 && number != last_ + 1) {
+      output_ += "Resend: " + std::to_string(last_ + 1) + "\nok\n";
+      return;
+    }
+    if (number > 0) last_ = number;
+    if (!line_.empty()) executed_.push_back(command);
+    if (command == "M115") output_ += "FIRMWARE_NAME:Complainer\n";
+    if (command == "M114") output_ += "X:0 Y:0 Z:0 E:0\n";
+    if (command.starts_with("G1 X20.5"))
+      output_ += complaint_;
+    else if (command == "M105")
+      output_ += "ok T:200 /200\n";
+    else if (!line_.empty() || !counts_)
+      output_ += "ok\n";
+  }
+
+  bool counts_;
+  std::string complaint_;
+  std::string line_;
+  std::size_t last_ = 0;
+};
+
+// The ok to what is asked behind the line is none for the line.
+TEST(Complaint, IsNotForgottenBecauseAQuestionIsAnswered) {
+  for (const bool counts : {true, false}) {
+    for (const std::size_t window : {0u, 96u}) {
+      Complainer firmware(counts, "Error:Endstop failure, axis lost\n");
+      FaultyPort port(firmware);
+      PrintControl control;
+      StreamOptions options = scenario_options();
+      options.window_bytes = window;
+      const auto failure = print(port, true, joined(gcode_program(100)), control, {}, options);
+      ASSERT_TRUE(failure) << counts << window;
+      EXPECT_THAT(failure->what(), HasSubstr("Endstop failure, axis lost"));
+      EXPECT_LT(count(port.executed(), "G1 X25.5 Y4 F6000"), 1u);
+      EXPECT_EQ(port.executed().back(), "M140 S0");
+    }
+  }
+}
+
+class Talkative : public Marlin {
+ public:
+  using Marlin::Marlin;
+  void add(const std::string& line) { output_ += line + "\n"; }
+};
+
+// A slow line that is complained of and answered all the same, after it was asked what is up.
+TEST(Complaint, OfASlowLineIsHarmlessWhereItsOwnOkComes) {
+  MarlinTraits traits;
+  traits.busy = false;
+  Talkative firmware(Pace{1, false}, traits);
+  FaultyPort port(firmware);
+  port.on_step = [&, said = false](std::size_t) mutable {
+    if (port.now_s() > 4 && !std::exchange(said, true)) firmware.add("Error:Probing Failed");
+  };
+  PrintControl control;
+  StreamOptions options = scenario_options();
+  options.timeout_s = 30;
+  const auto failure = print(port, true, "G1 X1\nG4 S20\nG1 X2\nG1 X3\n", control, {}, options);
+  EXPECT_FALSE(failure) << failure->what();
+  EXPECT_THAT(port.executed(), ::testing::Contains("M105")) << "it was asked";
+}
+
 // The error line is read before the request behind it, when the printer has been silent for long.
 TEST(Complaint, BehindALongSilenceIsNoReasonToGiveUp) {
   MarlinTraits traits;
