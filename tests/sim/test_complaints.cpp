@@ -140,7 +140,7 @@ TEST(GarbledHalt, IsToldOnceNothingFollows) {
 // `counts`, it refuses lines that do not follow; else it answers empty lines too.
 class Complainer : public simulated::Firmware {
  public:
-  Complainer(bool counts, std::string complaint) : counts_(counts), complaint_(complaint) {}
+  Complainer(bool counts, bool autoreport) : counts_(counts), autoreport_(autoreport) {}
 
   void receive(std::string_view bytes, double) override {
     for (const char c : bytes) {
@@ -166,10 +166,13 @@ class Complainer : public simulated::Firmware {
     }
     if (number > 0) last_ = number;
     if (!line_.empty()) executed_.push_back(command);
+    if (command == "M115" && autoreport_) output_ += "Cap:AUTOREPORT_TEMP:1\n";
     if (command == "M115") output_ += "FIRMWARE_NAME:Complainer\n";
-    if (command == "M114") output_ += "X:0 Y:0 Z:0 E:0\n";
+    if (command.starts_with("G1 X")) at_ = "X:" + command.substr(4, command.find(" Y") - 4);
+    if (command == "M114") output_ += at_ + " Y:" + std::to_string(last_y_) + " Z:0 E:0\n";
+    if (command.starts_with("G1 X")) last_y_ = command[command.find('Y') + 1] - '0';
     if (command.starts_with("G1 X20.5"))
-      output_ += complaint_;
+      output_ += "Error:Endstop failure, axis lost\n";
     else if (command == "M105")
       output_ += "ok T:200 /200\n";
     else if (!line_.empty() || !counts_)
@@ -177,27 +180,29 @@ class Complainer : public simulated::Firmware {
   }
 
   bool counts_;
-  std::string complaint_;
+  bool autoreport_;  // it can: no temperatures are asked for then, and silence has to tell
   std::string line_;
   std::size_t last_ = 0;
+  std::string at_ = "X:0";
+  int last_y_ = 0;
 };
 
 // The ok to what is asked behind the line is none for the line.
 TEST(Complaint, IsNotForgottenBecauseAQuestionIsAnswered) {
-  for (const bool counts : {true, false}) {
-    for (const std::size_t window : {0u, 96u}) {
-      Complainer firmware(counts, "Error:Endstop failure, axis lost\n");
-      FaultyPort port(firmware);
-      PrintControl control;
-      StreamOptions options = scenario_options();
-      options.window_bytes = window;
-      const auto failure = print(port, true, joined(gcode_program(100)), control, {}, options);
-      ASSERT_TRUE(failure) << counts << window;
-      EXPECT_THAT(failure->what(), HasSubstr("Endstop failure, axis lost"));
-      EXPECT_LT(count(port.executed(), "G1 X25.5 Y4 F6000"), 1u);
-      EXPECT_EQ(port.executed().back(), "M140 S0");
-    }
-  }
+  for (const bool counts : {true, false})
+    for (const bool autoreport : {true, false})
+      for (const std::size_t window : {0, 96}) {
+        Complainer firmware(counts, autoreport);
+        FaultyPort port(firmware);
+        PrintControl control;
+        StreamOptions options = scenario_options();
+        options.window_bytes = window;
+        const auto failure = print(port, true, joined(gcode_program(100)), control, {}, options);
+        ASSERT_TRUE(failure) << counts << autoreport << window;
+        EXPECT_THAT(failure->what(), HasSubstr("Endstop failure, axis lost"));
+        EXPECT_EQ(count(port.executed(), "G1 X25.5 Y4 F6000"), 0u);
+        EXPECT_THAT(port.executed(), ::testing::Contains("M140 S0"));
+      }
 }
 
 class Talkative : public Marlin {
