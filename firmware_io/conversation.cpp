@@ -45,6 +45,13 @@ void throw_stopped() {
               "Look at the machine, switch it off and on, then print the job again.");
 }
 
+void throw_failed_cancel(const Error& error, bool at_printer) {
+  throw Error(at_printer ? Fault::kIo : Fault::kInterrupted,
+              std::string("The print was cancelled") + (at_printer ? " at the printer" : "") +
+                  ", but it is not certain that the printer obeyed: " + error.what(),
+              kMayBeHot);
+}
+
 Reporter::Reporter(const Port& port, const PrintListener& listener, const StreamOptions& options,
                    std::size_t total, RemainingTime remaining)
     : port_(port),

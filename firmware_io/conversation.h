@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "firmware_io/port.h"
 #include "firmware_io/print_state.h"
 #include "firmware_io/remaining_time.h"
@@ -26,6 +27,12 @@ void check_machine(const std::string& port, const std::string& says, const std::
 
 // What a print fails with that was stopped at once.
 [[noreturn]] void throw_stopped();
+
+// What to do where nobody knows whether a printer obeyed its last command.
+inline constexpr const char* kMayBeHot =
+    "Its heaters may be on: look at the machine, and switch it off and on before the next job.";
+// In the place of `error`, which happened on the way of a cancel: the cause told is the cancel.
+[[noreturn]] void throw_failed_cancel(const Error& error, bool at_printer = false);
 
 // Keeps a print's listeners informed: of every change of state and acknowledgement at once, of
 // progress ten times a second.

@@ -16,8 +16,6 @@ constexpr double kLongestCancel_s = 60;
 // Its question is complete by then: the buttons come behind it.
 constexpr double kQuestion_s = 0.3;
 constexpr double kAnswerEvery_s = 2;
-constexpr const char* kMayBeHot =
-    "Its heaters may be on: look at the machine, and switch it off and on before the next job.";
 
 // The button that goes on: another one, such as "Purge More", may bring the same question again.
 std::size_t button_that_ends(const std::vector<std::string>& choices) {
@@ -110,15 +108,6 @@ void GcodeStream::halt_in_cancel() {
 
 Fault GcodeStream::fault_of_cancel() const {
   return cancelled_at_printer_ ? Fault::kIo : Fault::kInterrupted;
-}
-
-// The cause that is told is the cancel, not what went wrong on its way.
-void GcodeStream::throw_failed_cancel(const Error& error) const {
-  throw Error(fault_of_cancel(),
-              std::string("The print was cancelled") +
-                  (cancelled_at_printer_ ? " at the printer" : "") +
-                  ", but it is not certain that the printer obeyed: " + error.what(),
-              kMayBeHot);
 }
 
 // The few bytes that matter, for a person who waits no longer.

@@ -87,7 +87,8 @@ void print_gcode(Port& port, std::string_view program, const StreamOptions& opti
   } catch (const Error& error) {
     if (!stream.may_send()) throw;
     const std::string refusal = send_text(channel, safe);
-    if (stream.was_cancelled() && error.fault() == Fault::kIo) stream.throw_failed_cancel(error);
+    if (stream.was_cancelled() && error.fault() == Fault::kIo)
+      throw_failed_cancel(error, stream.was_cancelled_at_printer());
     if (refusal.empty() || ascii::has(error.what(), refusal)) throw;
     throw Error(error.fault(), std::string(error.what()) + "; then it said: " + refusal,
                 error.hint());

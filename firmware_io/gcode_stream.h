@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode_channel.h"
 #include "firmware_io/gcode_place.h"
@@ -34,8 +33,6 @@ class GcodeStream {
 
   bool was_cancelled() const { return cancelling_; }
   bool was_cancelled_at_printer() const { return cancelled_at_printer_; }
-  // After a cancel, in the place of what went wrong on its way.
-  [[noreturn]] void throw_failed_cancel(const Error& error) const;
   // False once the printer was reset or stopped at once: nothing may be sent to it any more.
   bool may_send() const { return may_send_; }
 

@@ -30,8 +30,8 @@ bool worth_repeating(std::uint8_t code) {
 
 }  // namespace
 
-Channel::Channel(Port& port, double timeout_s)
-    : port_(port), reply_wait_s_(std::clamp(timeout_s / kTries, 0.05, 1.0)) {}
+Channel::Channel(Port& port, double timeout_s, const PrintControl& control)
+    : port_(port), control_(control), reply_wait_s_(std::clamp(timeout_s / kTries, 0.05, 1.0)) {}
 
 bool Channel::listen(double timeout_s) {
   std::array<char, 512> bytes;
@@ -104,7 +104,7 @@ std::string Channel::query(std::string_view payload, std::size_t reply_size) {
     if (reply.code() == kOk) return reply.payload.size() == 1 + reply_size;
     return reply.payload.size() == 1 && reply.code() != kBufferFull;
   };
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kTries && !(i > 0 && control_.left()); ++i) {
     std::string reply;
     if (exchange(payload, expected, reply) != Outcome::kReply) {
       missed_ = true;
@@ -125,6 +125,8 @@ void Channel::try_query(Query code) {
   const Expected expected = [](const Reply& candidate) { return candidate.payload.size() == 1; };
   if (exchange(std::string(1, code), expected, reply) != Outcome::kReply) resynchronize();
 }
+
+void Channel::tell(Query code) { write_all(port_, packet(std::string(1, code))); }
 
 // Old firmware does not know the advanced version; then only the number is told.
 std::string Channel::firmware_name(std::uint32_t version) {

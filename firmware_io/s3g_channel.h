@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "firmware_io/port.h"
+#include "firmware_io/print_state.h"
 #include "firmware_io/s3g.h"
 #include "firmware_io/s3g_axes.h"
 
@@ -28,8 +29,9 @@ struct Statistics {
 
 class Channel {
  public:
-  // A reply is waited for at most a fifth of timeout_s and at most one second.
-  Channel(Port& port, double timeout_s);
+  // A reply is waited for at most a fifth of timeout_s and at most one second; once nobody waits
+  // any longer (control.left()), nothing is asked again.
+  Channel(Port& port, double timeout_s, const PrintControl& control);
 
   // A query is repeated up to five times. Returns what follows the response code; throws Error{kIo}
   // when nothing intact comes or the printer answers that its build is over.
@@ -37,6 +39,8 @@ class Channel {
 
   // A query without result, sent once only; its answer, if any, is not looked at.
   void try_query(Query code);
+  // The same without waiting for an answer.
+  void tell(Query code);
 
   // "Sailfish 7.8", "MakerBot 7.5"; version: as the version query gave it.
   std::string firmware_name(std::uint32_t version);
@@ -86,6 +90,7 @@ class Channel {
   void throw_if_over(std::uint8_t code);
 
   Port& port_;
+  const PrintControl& control_;
   double reply_wait_s_;
   ReplyReader reader_;
   int surplus_ = 0;

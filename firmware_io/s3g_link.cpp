@@ -1,5 +1,6 @@
 #include "firmware_io/s3g_link.h"
 
+#include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/s3g_actions.h"
 #include "firmware_io/s3g_channel.h"
@@ -15,11 +16,14 @@ void print_x3g(Port& port, std::string_view program, const StreamOptions& option
   actions.complete(options.build_name);
 
   Reporter reporter(port, listener, options, program.size(), RemainingTime(time_marks(actions)));
-  s3g::Channel channel(port, options.timeout_s);
+  s3g::Channel channel(port, options.timeout_s, control);
   s3g::Print print(channel, reporter, control);
   print.connect(options.boot_wait_s, options.machine);
   try {
     print.run(actions);
+  } catch (const Error& error) {
+    print.end_by(error);
+    throw;
   } catch (...) {
     print.abort_quietly();
     throw;

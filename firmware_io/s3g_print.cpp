@@ -157,6 +157,7 @@ void Print::wait(double& wait_s, double longest_s) {
 
 void Print::obey() {
   control_.take_answer();  // a Replicator is answered at its own panel
+  if (control_.left()) leave_at_once();
   if (control_.stopped()) stop_at_once();
   if (control_.cancelled()) cancel();
   reporter_.tick();
@@ -166,9 +167,29 @@ void Print::obey() {
 
 void Print::stop_at_once() {
   may_abort_ = false;  // it is done here
+  leaves_ = true;
   channel_.tolerate_cancelled(true);
-  channel_.query(std::string(1, kAbort), 0);
+  try {
+    channel_.query(std::string(1, kAbort), 0);
+  } catch (const Error& error) {
+    throw Error(Fault::kIo,
+                std::string("The printer was to be stopped at once, as somebody asked, but it is "
+                            "not certain that it obeyed: ") +
+                    error.what(),
+                kMayBeHot);
+  }
   throw_stopped();
+}
+
+// For a person who waits no longer.
+void Print::leave_at_once() {
+  may_abort_ = false;
+  leaves_ = true;
+  channel_.tell(kAbort);
+  throw Error(Fault::kInterrupted,
+              "The print was ended at once: the printer was told to abort, and nobody waited to "
+              "see it obeyed",
+              kMayBeHot);
 }
 
 // The query toggles, so the build state is read before each try, and what is wanted may already be
@@ -194,12 +215,22 @@ void Print::cancel() {
   constexpr double kPatience_s = 10;
   const double end = channel_.now_s() + kPatience_s;
   while (is_building(channel_.statistics().state) || !channel_.is_finished()) {
+    if (control_.left()) leave_at_once();
+    if (control_.stopped()) stop_at_once();
     if (channel_.now_s() > end)
       fail("The printer was told to cancel but is still building",
            "Cancel at the printer's panel, or switch it off.");
     channel_.pause(kSlice_s / 2);
   }
   throw Error(Fault::kInterrupted, "The print was cancelled", "");
+}
+
+void Print::end_by(const Error& error) {
+  const bool failed = error.fault() == Fault::kIo && !leaves_;
+  if (failed && control_.left()) leave_at_once();
+  if (failed && control_.stopped()) stop_at_once();
+  abort_quietly();
+  if (failed && control_.cancelled()) throw_failed_cancel(error);
 }
 
 void Print::abort_quietly() {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/print_state.h"
 #include "firmware_io/s3g_actions.h"
@@ -34,6 +35,9 @@ class Print {
 
   // Best effort after a failure: stops the machine, heaters off.
   void abort_quietly();
+  // The same after what run() threw. Where somebody wished the end, and the printer failed on the
+  // way to it, throws Error that tells the wish as the cause, and that the heaters may be on.
+  void end_by(const Error& error);
 
  private:
   void send(std::size_t index);
@@ -53,6 +57,7 @@ class Print {
   void obey();
   void cancel();
   [[noreturn]] void stop_at_once();
+  [[noreturn]] void leave_at_once();
   void set_paused(bool wanted);
   void wait(double& wait_s, double longest_s);
   void watch();
@@ -81,6 +86,7 @@ class Print {
   bool seen_running_ = false;
   std::optional<bool> pause_wanted_;  // asked for, until the build has begun
   bool may_abort_ = true;
+  bool leaves_ = false;  // the last was said, whatever comes
   double watched_at_s_ = 0;
 
   std::set<std::uint8_t> tools_;  // that the program heats

@@ -132,6 +132,99 @@ TEST(Replicator, CancelWhileHeatingActsWithinASecond) {
   EXPECT_EQ(port.executed().back(), "abort");
 }
 
+// How a print ends that is heating when the machine falls silent (it hears nothing either) and,
+// a little later, somebody wants to end it.
+std::optional<Error> end_silent_machine(FaultyPort& port, PrintControl& control,
+                                        const std::function<void()>& wish, double wish_s = 20.5) {
+  port.on_send = [&](std::string& bytes) {
+    if (port.now_s() > 20) bytes.clear();
+  };
+  port.on_step = [&, wish_s, wished = false](std::size_t) mutable {
+    if (port.now_s() > wish_s && !std::exchange(wished, true)) wish();
+  };
+  return print(port, false, x3g_program(100).bytes, control);
+}
+
+TEST(SilentReplicator, ACancelIsTheCauseThatIsTold) {
+  // before and while a question of the link's own is not answered
+  for (const double wish_s : {20.05, 20.5, 23.0}) {
+    Replicator firmware(Pace{1, false});
+    FaultyPort port(firmware);
+    PrintControl control;
+    const auto failure = end_silent_machine(
+        port, control, [&] { control.cancel(); }, wish_s);
+    ASSERT_TRUE(failure) << wish_s;
+    EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+    EXPECT_THAT(failure->what(), HasSubstr("The print was cancelled, but"));
+    EXPECT_THAT(failure->hint(), HasSubstr("heaters may be on"));
+  }
+}
+
+TEST(SilentReplicator, AStopAtOnceIsTheCauseThatIsTold) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  const auto failure = end_silent_machine(port, control, [&] { control.stop_at_once(); });
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kIo);
+  EXPECT_THAT(failure->what(), HasSubstr("stopped at once, as somebody asked, but"));
+  EXPECT_THAT(failure->hint(), HasSubstr("heaters may be on"));
+}
+
+const std::string kAbortPacket("\xD5\x01\x07\x83", 4);
+
+// Nor does anybody wait for a cancel that is under way already.
+TEST(SilentReplicator, WhoLeavesWaitsForNothing) {
+  for (const bool cancelled : {false, true}) {
+    Replicator firmware(Pace{1, false});
+    FaultyPort port(firmware);
+    PrintControl control;
+    const auto failure = end_silent_machine(port, control, [&] {
+      if (cancelled) control.cancel();
+      control.leave();
+    });
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+    EXPECT_THAT(failure->what(), HasSubstr("ended at once"));
+    EXPECT_THAT(failure->hint(), HasSubstr("heaters may be on"));
+    EXPECT_THAT(port.sent, ::testing::EndsWith(kAbortPacket));
+    EXPECT_LT(port.now_s(), 22);
+  }
+}
+
+TEST(Replicator, WhoLeavesHasTheHeatersTurnedOff) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  port.on_step = [&](std::size_t) {
+    if (port.now_s() > 20) control.leave();
+  };
+  const auto failure = print(port, false, x3g_program(100).bytes, control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+  EXPECT_LT(port.now_s(), 20.5);
+  port.leave_alone(5);
+  EXPECT_EQ(port.executed().back(), "abort");
+}
+
+// One that goes on building whatever it is told.
+TEST(Replicator, ThatDoesNotObeyACancelMayBeHot) {
+  Replicator firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  port.on_send = [&](std::string& bytes) {
+    if (bytes == kAbortPacket) bytes = std::string("\xD5\x01\x01\x5E", 4);  // init
+  };
+  port.on_step = [&](std::size_t) {
+    if (port.now_s() > 20) control.cancel();
+  };
+  const auto failure = print(port, false, x3g_program(100).bytes, control);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+  EXPECT_THAT(failure->what(), HasSubstr("told to cancel but is still building"));
+  EXPECT_THAT(failure->hint(), HasSubstr("heaters may be on"));
+}
+
 TEST(Replicator, ABuildOfSomeoneElseIsNotTouched) {
   Replicator firmware(Pace{1, true});
   firmware.receive(std::string("\xD5\x07\x99\0\0\0\0\x61\0\x3E", 10), 0);  // build start "a"
