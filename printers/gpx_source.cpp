@@ -45,6 +45,7 @@ class Writer {
       return true;
     });
     tell_what_is_left_out();
+    tell_of_fan();
     return std::move(source_);
   }
 
@@ -220,6 +221,9 @@ class Writer {
         return;
       case 104:
         return heat(line, kHottestNozzle);
+      case 106:
+      case 126:
+        return turn_fan(line);
       case 109:
         return heat(line, source_.makerbot_flavour ? kHottestPlate : kHottestNozzle);
       case 108:
@@ -255,6 +259,17 @@ class Writer {
     pass(line);
   }
 
+  // A speed below 1 is off, to gpx as to Marlin.
+  void turn_fan(const GcodeLine& line) {
+    constexpr double kWhole = 255;
+    const auto speed = line.value('S');
+    if (speed && *speed >= 1 && *speed < kWhole) {
+      if (part_fans_ == 0) first_part_fan_ = number_;
+      ++part_fans_;
+    }
+    pass(line);
+  }
+
   // gpx takes the text from the comment.
   void message(const GcodeLine& line) {
     std::string text;
@@ -275,12 +290,24 @@ class Writer {
         {"left_out", "Left out of the x3g, because a Replicator has nothing like it: " + list});
   }
 
+  void tell_of_fan() {
+    if (part_fans_ == 0) return;
+    source_.warnings.push_back(
+        {"fan_full",
+         fmt::format("Line {} of the program turns the fan on in part{}; a Replicator's fan is on "
+                     "or off, and will be fully on",
+                     first_part_fan_,
+                     part_fans_ == 1 ? "" : fmt::format(", as do {} others", part_fans_ - 1))});
+  }
+
   Fault fault_;
   GpxSource source_;
   GcodeMotion motion_{GcodeRules::kGpx};
   std::array<bool, 3> placed_before_{};
   std::array<double, 2> filament_mm_{};  // as it was written
   std::map<std::string, int> left_out_;
+  int part_fans_ = 0;  // lines that set the fan to some speed
+  int first_part_fan_ = 0;
   std::string_view text_;
   int number_ = 0;
   bool ended_ = false;

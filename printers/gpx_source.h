@@ -18,7 +18,9 @@ inline constexpr double kHottestNozzle = 280;
 struct GpxSource {
   std::string gcode;  // every line numbered (N) as the line it was made of
   bool makerbot_flavour = false;
-  Warnings warnings;  // left_out: messages, questions and accelerations, which harm nothing
+  // left_out: messages, questions and accelerations, which harm nothing; fan_full: a fan that was
+  // to turn at some speed
+  Warnings warnings;
 };
 
 // Axes absolute, in mm and the machine's own coordinates; filament absolute by tool (A, B); arcs as

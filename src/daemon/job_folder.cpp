@@ -85,8 +85,8 @@ PreparedJob read_prepared(const fs::path& folder) {
     for (const json& warning : report.value("warnings", json::array())) {
       const std::string code = text_in(warning, "code");
       const bool matters = code == "suspicious_size" || code == "shape_changed";
-      // what a Replicator has nothing like harms nobody
-      const bool asks = is_model ? matters : code != "left_out";
+      // what a Replicator has nothing like harms nobody, nor does a fan that blows more
+      const bool asks = is_model ? matters : code != "left_out" && code != "fan_full";
       if (asks && job.warning.empty()) job.warning = text_in(warning, "text");
     }
     if (const json* estimate = estimate_of(report.at("estimates"), job.variant)) {

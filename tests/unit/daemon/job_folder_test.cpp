@@ -71,6 +71,7 @@ TEST(JobFolder, EveryDoubtAboutAProgramButWhatWasLeftOut) {
   };
   EXPECT_EQ(doubt("moves_not_judged"), "line 3");
   EXPECT_EQ(doubt("left_out"), "");
+  EXPECT_EQ(doubt("fan_full"), "");
 }
 
 TEST(JobFolder, RefusesWhatIsNoReport) {

@@ -107,6 +107,21 @@ TEST(GpxSource, TellsWhatItLeavesOut) {
       << made.warnings[0].text;
 }
 
+// A Replicator's fan is on or off, so gpx turns it fully on.
+TEST(GpxSource, TellsOfAFanThatIsToTurnInPart) {
+  EXPECT_TRUE(gpx_source("M106\nM106 S255\nM106 S0\nM107\nM126 T0\nM106 S0.4\n", Fault::kBadInput)
+                  .warnings.empty());
+  const GpxSource made =
+      gpx_source("M106 S255\nM106 S64\nM126 S9\nM106 P0 S254\n", Fault::kBadInput);
+  EXPECT_NE(made.gcode.find("N2 M106 S64.00000\n"), std::string::npos);
+  ASSERT_EQ(made.warnings.size(), 1U);
+  EXPECT_EQ(made.warnings[0].code, "fan_full");
+  EXPECT_NE(
+      made.warnings[0].text.find("Line 2 of the program turns the fan on in part, as do 2 others"),
+      std::string::npos)
+      << made.warnings[0].text;
+}
+
 // gpx knows extruders that turn by speed and time, as ReplicatorG's programs prime the nozzle.
 TEST(GpxSource, PassesOnWhatTurnsTheExtruder) {
   EXPECT_EQ(last(kStart + "M108 R5"), "M108 R5.00000");
