@@ -22,8 +22,9 @@ constexpr double kUnbelievablyLarge = 10000;
 
 double factor(const ModelFile& file, const Sizing& sizing) {
   if (sizing.size_mm) {
-    Box3 box;
-    for (const Vec3& point : file.soup.points) box.extend(point);
+    Box3 box;  // of what is printed: points may stand about that no triangle needs
+    for (const auto& triangle : file.soup.triangles)
+      for (const int corner : triangle) box.extend(file.soup.points[corner]);
     return *sizing.size_mm / box.sizes().maxCoeff();
   }
   return sizing.scale * (file.has_unit ? 1 : sizing.unit_mm);

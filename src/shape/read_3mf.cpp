@@ -121,23 +121,28 @@ class ModelReader {
 
   Parts3mf read() {
     const ModelPart& root = part(root_);
-    roles_ = read_volume_roles(archive_);
-    progress_.check();
     const pugi::xml_node model = child_named(root.xml->tree, "model");
+    roles_ = read_volume_roles(archive_, model);
+    progress_.check();
     for (const pugi::xml_node& item : child_named(model, "build").children()) {
       if (local_name(item.name()) != "item") continue;
       if (is_not_printed(item)) {
         ++left_out_.unprinted_items;
         continue;
       }
+      if (const VolumeRole role = cura_role(item, model); role != VolumeRole::kPart) {
+        count_left_out(role);
+        continue;
+      }
       const std::string path = path_of(item);
       add_object(item, path.empty() ? root_ : path, transform_of(item, root.unit), 0);
     }
-    if (soup_.point_count() == 0)
+    TriangleSoup soup = soup_.finish();
+    if (soup.triangles.empty())
       throw Error(Fault::kBadInput, "The 3MF file's build holds nothing to print",
                   "Put the model on the plate in the program that made the file, and export it "
                   "again.");
-    return {soup_.finish(), left_out_};
+    return {std::move(soup), left_out_};
   }
 
  private:

@@ -32,9 +32,10 @@ struct ModelFile {
 // indices within points and every coordinate is finite; nothing else is promised: see repair().
 // 3MF: items, components and their transforms are applied, in mm; objects of type "support" and
 // "other" and items that are not to be printed are left out. So are the modifiers, support blockers
-// and support enforcers of PrusaSlicer's, Bambu Studio's and OrcaSlicer's projects. Refused are a
-// project with a negative volume, objects of types that are not known, and shapes that are
-// told by more than meshes: beams, slices (unless the mesh is called their equal) and the like.
+// and support enforcers of PrusaSlicer's, Bambu Studio's, OrcaSlicer's and Cura's projects. Refused
+// are a project with a negative volume or a mould, objects of types that are not known, and shapes
+// that are told by more than meshes: beams, slices (unless the mesh is called their equal) and the
+// like.
 //
 // Nothing in the file is trusted: counts are checked against the bytes that are there before
 // memory is taken. Limits: 1 GiB a file; 512 MiB, and 200 times the archive's size, what is read of

@@ -65,4 +65,19 @@ void refuse_negative_volume(const std::string& object) {
               "was drawn with.");
 }
 
+void refuse_unknown_role(std::string_view name) {
+  throw Error(Fault::kBadInput,
+              "The 3MF project holds a volume of a kind that is not known (" +
+                  std::string(name.substr(0, 40)) + ")",
+              "Export the model from the slicer as STL.");
+}
+
+void refuse_mould(const pugi::xml_node& object) {
+  const std::string name = object.attribute("name").value();
+  throw Error(Fault::kBadInput,
+              "The 3MF project asks for a mould of the model" +
+                  (name.empty() ? "" : " " + name.substr(0, 80)) + ", which is not supported",
+              "Switch the mould off in the slicer, or draw it and export it as STL.");
+}
+
 }  // namespace packmerger

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <pugixml.hpp>
 
@@ -18,5 +19,10 @@ void refuse_required_extensions(const pugi::xml_node& model);
 void refuse_unread_shapes(const pugi::xml_node& object);
 
 [[noreturn]] void refuse_negative_volume(const std::string& object);
+
+// name: as the slicer's project calls what the volume is for.
+[[noreturn]] void refuse_unknown_role(std::string_view name);
+
+[[noreturn]] void refuse_mould(const pugi::xml_node& object);
 
 }  // namespace packmerger
