@@ -19,11 +19,9 @@ namespace {
 // Pieces of a triangle smaller than this part of the distance are not looked into any more.
 constexpr double kSmallest = 0.1;
 // What changes more than this of the area or the volume is told, and of the longest side: how far
-// points may be moved.
+// points may be moved, and how far surface that is new may reach from what was there. The middle of
+// a hole that was closed is half its width from its rim.
 constexpr double kChanged = 0.01;
-// Half the width that a hole may have, of the longest side. Facets that are missing in coarse
-// models are this small; the mouth of a bottle drawn without thickness is wider.
-constexpr double kHole = 0.025;
 
 using Corners = std::array<Vec3, 3>;
 using Place = std::array<std::array<double, 3>, 3>;
@@ -107,7 +105,7 @@ bool any_reaches_further(const std::vector<Corners>& triangles, const TriangleSo
 bool closed_a_wide_hole(const Mending& mending, double longest_mm, const Progress& progress) {
   return any_reaches_further(
       triangles_missing_in(mending.before, mending.after), without_flat(mending.before),
-      kHole * longest_mm, [](const SurfaceQuery&, const Vec3&) { return true; }, progress);
+      kChanged * longest_mm, [](const SurfaceQuery&, const Vec3&) { return true; }, progress);
 }
 
 bool left_something_out(const Mending& mending, double longest_mm, const Progress& progress) {
@@ -140,7 +138,7 @@ void warn_of_change(const Mending& mending, Warnings& warnings, const Progress& 
   if (area > kChanged) add("changed its area by " + percent(area));
   if (volume > kChanged) add("changed its volume by " + percent(volume));
   if (!mending.is_skin && closed_a_wide_hole(mending, longest_mm, progress))
-    add("closed a hole wider than 5 % of its longest side");
+    add("closed a hole wider than 2 % of its longest side");
   if (left_something_out(mending, longest_mm, progress))
     add("moved or left out what is further than 1 % of its longest side from the rest");
   if (text.empty() && !mending.is_skin) return;

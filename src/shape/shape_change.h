@@ -16,9 +16,10 @@ struct Mending {
 };
 
 // Adds the warning "shape_changed" where mending changed the area by more than 1 %, or the volume
-// of what was closed, made a body of a skin, closed a hole wider than 5 % of the longest side, or
-// left out or moved points that are now outside and further than 1 % of the longest side from the
-// surface. Facets in the same place, whichever way turned, were not moved.
+// of what was closed, made a body of a skin, closed a hole whose new surface reaches further than
+// 1 % of the longest side from the old one (about twice as wide a hole), or left out or moved
+// points that are now outside and as far from the new one. Facets in the same place, whichever way
+// turned, were not moved.
 void warn_of_change(const Mending& mending, Warnings& warnings, const Progress& progress);
 
 }  // namespace packmerger

@@ -188,9 +188,34 @@ TEST(Repair, TellsThatASkinBecameABody) {
     return (bell.points[t[0]] + bell.points[t[1]] + bell.points[t[2]]).z() < 0;
   });
   EXPECT_THAT(repaired(bell).changed, HasSubstr("open over its whole width"));
-  TriangleSoup ball = fixtures::sphere(10, 3);
+  TriangleSoup ball = fixtures::sphere(10, 5);
   ball.triangles.pop_back();
   EXPECT_EQ(repaired(ball).changed, "");
+}
+
+// A cube of 100 mm with a square hole in the middle of its top.
+TriangleSoup cube_with_hole(double width_mm) {
+  TriangleSoup soup = fixtures::cube(100);
+  std::erase_if(soup.triangles, [&](const auto& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(),
+                       [&](int corner) { return soup.points[corner].z() == 100; });
+  });
+  const int base = static_cast<int>(soup.points.size());
+  for (const double half_mm : {50.0, width_mm / 2})
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+      soup.points.push_back({50 + x * half_mm, 50 + y * half_mm, 100});
+  for (int i = 0; i < 4; ++i) {
+    const int next = (i + 1) % 4;
+    soup.triangles.push_back({base + i, base + next, base + 4 + next});
+    soup.triangles.push_back({base + i, base + 4 + next, base + 4 + i});
+  }
+  return soup;
+}
+
+TEST(Repair, TellsOfAHoleWhoseMiddleIsMoreThanAHundredthFromItsRim) {
+  EXPECT_EQ(repaired(cube_with_hole(1.9)).changed, "");
+  for (const double width_mm : {2.3, 3.0, 4.9})
+    EXPECT_THAT(repaired(cube_with_hole(width_mm)).changed, HasSubstr("closed a hole wider"));
 }
 
 // A bottle that is drawn without thickness: its mouth is a hundredth of its area.
@@ -200,7 +225,7 @@ TEST(Repair, TellsOfAWideHoleAndOfWhatIsLeftOut) {
     return std::all_of(triangle.begin(), triangle.end(),
                        [&](int corner) { return bottle.points[corner].z() > 9.8; });
   });
-  EXPECT_THAT(repaired(bottle).changed, HasSubstr("closed a hole wider than 5 %"));
+  EXPECT_THAT(repaired(bottle).changed, HasSubstr("closed a hole wider than 2 %"));
 
   TriangleSoup shard = fixtures::sphere(10, 3);
   const int base = static_cast<int>(shard.points.size());
