@@ -35,7 +35,9 @@ def sent(data):
     return [line for line in lines if line]
 
 
-class Prepare(unittest.TestCase):
+class Prepared(unittest.TestCase):
+    """What the tests below share: a folder, and programs prepared in it."""
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="packmerger-programs-")
         self.addCleanup(folder.cleanup)
@@ -45,6 +47,8 @@ class Prepare(unittest.TestCase):
         (self.folder / name).write_bytes(data)
         return program.run("prepare", self.folder / name, "--profile", profile, "--out", self.folder / "job", *options)
 
+
+class Prepare(Prepared):
     def test_gcode_is_taken_as_it_is(self):
         data = gcode().replace(b"\n", b"\r\n")
         result = self.prepare(data, "marlin", "--json")
