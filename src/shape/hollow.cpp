@@ -27,6 +27,10 @@ constexpr double kCoarsening = 0.03;
 // flat tetrahedra.
 constexpr double kLongestEdge = 2;
 constexpr double kThinShare = 0.5;
+// Points of a cavity's surface that are asked which side of the model's they lie on. Rays that meet
+// an edge err now and then, but not this often.
+constexpr std::size_t kAsked = 1000;
+constexpr double kErring = 0.05;
 
 double distance_to(const SurfaceQuery& outer, const TriangleSoup& soup) {
   std::vector<double> distances(soup.triangles.size());
@@ -73,6 +77,23 @@ std::optional<TriangleSoup> coarse_boundary(const TriangleSoup& fine, const Surf
   return std::nullopt;
 }
 
+// A chamber with a narrow way out, such as a drain hole that no voxel lies in, counts as inside for
+// the grid. Its level lies in the void. A level keeps away from the surface, so that all of a
+// component is on one side of it.
+bool is_in_matter(const TriangleSoup& level, const SurfaceQuery& outer) {
+  const std::size_t step = std::max<std::size_t>(1, level.points.size() / kAsked);
+  std::vector<char> in_matter((level.points.size() + step - 1) / step);
+  parallel_for(in_matter.size(), [&](std::size_t i) {
+    in_matter[i] = outer.winding_number(level.points[i * step]) > 0 ? 1 : 0;
+  });
+  const auto count = std::count(in_matter.begin(), in_matter.end(), 1);
+  const double share = static_cast<double>(count) / static_cast<double>(in_matter.size());
+  if (share > kErring && share < 1 - kErring)
+    throw Error(Fault::kBadInput, "It cannot be told where the model's matter is",
+                "Repair the model in a mesh editor (remesh it with voxels), or prepare it solid.");
+  return share > 0.5;
+}
+
 // The boundaries of the cavities at a depth of at least wall_mm, normals pointing away from the
 // hollow. Deeper levels are tried where the grid is too coarse for one.
 std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& outer,
@@ -86,6 +107,7 @@ std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& out
     for (const TriangleSoup& fine : split_components(*level)) {
       // Islands of matter in a cavity have a negative volume.
       if (!good || signed_volume_mm3(fine) < settings.min_cavity_mm3) continue;
+      if (!is_in_matter(fine, outer)) continue;
       progress.report("hollowing", 0.6);
       auto coarse = coarse_boundary(fine, outer, settings.wall_mm, progress);
       good = coarse.has_value();
@@ -185,6 +207,9 @@ Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warning
     shell.cavities.push_back(closed_mesh(turned(boundary)));
     shell.volume_mm3 += volume_mm3(shell.cavities.back());  // negative
   }
+  if (!(shell.volume_mm3 > 0))
+    throw Error(Fault::kBadInput, "Hollowing would leave nothing of the model",
+                "Repair the model in a mesh editor (remesh it with voxels), or prepare it solid.");
   warn(shell, thin_share(outer, query, wall), warnings);
   progress.report("hollowing", 1);
   return shell;

@@ -12,7 +12,8 @@ namespace packmerger {
 // The inner surface lies at depth settings.wall_mm below the outer one: a level of the signed
 // distance, sampled every settings.voxel_mm on a sparse grid, coarsened within a tenth of the wall.
 // Cavities below settings.min_cavity_mm3 stay solid. Each cavity is closed, manifold, free of
-// self-intersections, one component, and no nearer to the outer surface than 0.9 wall_mm.
+// self-intersections, one component, within the matter, and no nearer to the outer surface than 0.9
+// wall_mm. A chamber with a way out is no matter, however narrow the way.
 //
 // Too thin to hollow is an ordinary outcome: no cavities. Inner components of `outer` (the model's
 // own cavities) stay part of Shell::outer, and the wall is kept around them too; where that wall
@@ -22,7 +23,8 @@ namespace packmerger {
 // "thin_features" (more than half of the surface has less than two walls of matter below it).
 //
 // outer: closed, not self-intersecting, mm. Throws Error{kBadInput} when the wall needs a grid of
-// more than 200 million voxels, or when no inner surface is found that does not cross itself.
+// more than 200 million voxels, when no inner surface is found that does not cross itself, or when
+// it cannot be told what is matter.
 Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warnings,
              const Progress& progress);
 
