@@ -13,7 +13,7 @@ namespace packmerger {
 // What becomes of sheets between which and the outside no voxel lies, such as the walls of a
 // crevice.
 enum class NarrowSheets {
-  kCount,  // the surface does not cross itself: they bound matter as others do
+  kCount,  // distances are measured to them as to others
   kDrop,   // they may be inner ones, of bodies that overlap: no distance is measured to them
 };
 

@@ -78,16 +78,16 @@ std::optional<TriangleSoup> coarse_boundary(const TriangleSoup& fine, const Surf
 }
 
 // A chamber with a narrow way out, such as a drain hole that no voxel lies in, counts as inside for
-// the grid. Its level lies in the void. A level keeps away from the surface, so that all of a
-// component is on one side of it.
-bool is_in_matter(const TriangleSoup& level, const SurfaceQuery& outer) {
+// the grid. Its level lies in the void. And a cavity in what is enclosed twice would still be
+// enclosed once. A level keeps away from the surface, so that all of a component is on one side.
+bool is_enclosed_once(const TriangleSoup& level, const SurfaceQuery& outer) {
   const std::size_t step = std::max<std::size_t>(1, level.points.size() / kAsked);
-  std::vector<char> in_matter((level.points.size() + step - 1) / step);
-  parallel_for(in_matter.size(), [&](std::size_t i) {
-    in_matter[i] = outer.winding_number(level.points[i * step]) > 0 ? 1 : 0;
+  std::vector<char> once((level.points.size() + step - 1) / step);
+  parallel_for(once.size(), [&](std::size_t i) {
+    once[i] = outer.winding_number(level.points[i * step]) == 1 ? 1 : 0;
   });
-  const auto count = std::count(in_matter.begin(), in_matter.end(), 1);
-  const double share = static_cast<double>(count) / static_cast<double>(in_matter.size());
+  const auto count = std::count(once.begin(), once.end(), 1);
+  const double share = static_cast<double>(count) / static_cast<double>(once.size());
   if (share > kErring && share < 1 - kErring)
     throw Error(Fault::kBadInput, "It cannot be told where the model's matter is",
                 "Repair the model in a mesh editor (remesh it with voxels), or prepare it solid.");
@@ -107,7 +107,7 @@ std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& out
     for (const TriangleSoup& fine : split_components(*level)) {
       // Islands of matter in a cavity have a negative volume.
       if (!good || signed_volume_mm3(fine) < settings.min_cavity_mm3) continue;
-      if (!is_in_matter(fine, outer)) continue;
+      if (!is_enclosed_once(fine, outer)) continue;
       progress.report("hollowing", 0.6);
       auto coarse = coarse_boundary(fine, outer, settings.wall_mm, progress);
       good = coarse.has_value();

@@ -22,7 +22,8 @@ namespace packmerger {
 // Warnings: "sealed_cavity" (support or powder stays trapped in the model printed in one piece),
 // "thin_features" (more than half of the surface has less than two walls of matter below it).
 //
-// outer: closed, not self-intersecting, mm. Throws Error{kBadInput} when the wall needs a grid of
+// outer: closed, mm. Where it crosses itself, the wall is kept along all of its sheets, and what it
+// winds around twice stays solid. Throws Error{kBadInput} when the wall needs a grid of
 // more than 200 million voxels, when no inner surface is found that does not cross itself, or when
 // it cannot be told what is matter.
 Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warnings,

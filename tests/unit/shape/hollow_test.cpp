@@ -204,6 +204,19 @@ TEST(Hollow, MatterInAnOwnCavityIsHollowedToo) {
   EXPECT_NEAR(-volume_mm3(shell.cavities[0]), 34 * 34 * 34, 1000);
 }
 
+// Such surfaces come where bodies that overlap could not be united.
+TEST(Hollow, WhatIsEnclosedTwiceStaysSolid) {
+  const TriangleSoup crossing = fixtures::together(
+      fixtures::cube(40), fixtures::box(Vec3::Constant(13.1), Vec3::Constant(53.1)));
+  ASSERT_TRUE(self_intersects(closed_mesh(crossing)));
+  Warnings warnings;
+  const Shell shell = hollowed(crossing, warnings);
+  expect_good_cavities(shell, 3);
+  ASSERT_EQ(shell.cavities.size(), 2u) << "one in each body, beside the other";
+  for (const Mesh& cavity : shell.cavities)
+    EXPECT_NEAR(-volume_mm3(cavity), 34 * 34 * 34 - 26.9 * 26.9 * 26.9, 1500);
+}
+
 TEST(Hollow, SameBytesOnOneAndTwoThreads) {
   const TriangleSoup model = fixtures::blob(60, 4);
   const auto with_threads = [&](std::size_t threads) {
