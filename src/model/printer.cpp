@@ -10,9 +10,9 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/nearest.h"
 #include "base/process.h"
 #include "model/derived_profile.h"
+#include "model/near_profile.h"
 #include "model/profile_file.h"
 #include "model/profile_keys.h"
 
@@ -71,7 +71,7 @@ std::string what_there_is(const std::string& id) {
   return fmt::format(
       "{}There are {}. For another printer write a profile of your own on the base of "
       "the nearest (docs/PROFILES.md); its path must contain a slash or end in .toml.",
-      did_you_mean(id, ids), fmt::join(ids, ", "));
+      near_profile(id, ids), fmt::join(ids, ", "));
 }
 
 // Where an id or a path, as read_profile() takes it, is read from.

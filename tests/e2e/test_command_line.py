@@ -64,7 +64,9 @@ class Usage(CommandLine):
         self.assertIn('Did you mean "cancel"?', self.expect(2, "jobs", "cancle", "3").err)
         near = self.expect(66, "prepare", self.sphere, "--profile", "replicater", "--out", self.folder / "job").err
         self.assertIn('Did you mean "replicator"?', near)
-        for err in (self.expect(66, "compare", self.sphere, "--profile", "ender3").err,
+        ender = self.expect(66, "compare", self.sphere, "--profile", "ender3").err
+        self.assertIn('The nearest is "marlin", for printers that melt filament', ender)
+        for err in (ender,
                     self.expect(2, "compare", self.sphere).err,
                     self.expect(2, "prepare", self.sphere, "--out", self.folder / "job").err):
             self.assertIn("marlin, objet30, replicator, uprint", err)
