@@ -91,9 +91,38 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
   return arrangement;
 }
 
+// The width of the rectangle of the same area and perimeter, or of the square where it is rounder:
+// that of strips, rings and small squares alike.
+double width_mm(double area_mm2, double perimeter_mm) {
+  const double half_sum = perimeter_mm / 4;
+  return half_sum - std::sqrt(std::max(0.0, half_sum * half_sum - area_mm2));
+}
+
+// Slicers refuse what stands on a point or an edge: islands as wide as a line have to hold a line
+// or two.
+bool stands_on_a_point(const Layer& footprint, double line_mm) {
+  std::vector<Contour> islands;
+  for (const Contour& contour : footprint.contours)
+    if (contour.area_mm2 > 0) islands.push_back(contour);
+  std::sort(islands.begin(), islands.end(),
+            [](const Contour& a, const Contour& b) { return a.box.volume() < b.box.volume(); });
+  for (const Contour& hole : footprint.contours) {
+    if (hole.area_mm2 > 0) continue;
+    const auto around = std::find_if(islands.begin(), islands.end(), [&](const Contour& island) {
+      return island.box.contains(hole.box);
+    });
+    if (around == islands.end()) continue;
+    around->area_mm2 += hole.area_mm2;
+    around->perimeter_mm += hole.perimeter_mm;
+  }
+  double printable_mm2 = 0;
+  for (const Contour& island : islands)
+    if (width_mm(island.area_mm2, island.perimeter_mm) >= line_mm) printable_mm2 += island.area_mm2;
+  return printable_mm2 < std::pow(2 * line_mm, 2);
+}
+
 std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Progress& progress) {
   const std::vector<Mat3> ways = ways_up();
-  // Slicers refuse what stands on a point or an edge: the first layer has to hold a line or two.
   const double line_mm = profile.is_sliced() ? profile.fdm.line_width_mm : 0;
   using Rank = std::tuple<bool, double, double, std::size_t>;  // on a point, cost, time, index
   std::vector<Rank> ranks(2 * ways.size(), {true, std::numeric_limits<double>::infinity(), 0, 0});
@@ -107,8 +136,7 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
     const BothTurns both = estimate_both_turns(profile, {tray}, Assembly{}, progress);
     const Layer footprint = slice_at(tray.parts.front(), profile.layer_mm / 2);
-    const bool on_point = footprint.area_mm2 < std::pow(2 * line_mm, 2) ||
-                          2 * footprint.area_mm2 < line_mm * footprint.perimeter_mm;
+    const bool on_point = stands_on_a_point(footprint, line_mm);
     if (fits_straight) ranks[2 * i] = {on_point, both.straight.cost, both.straight.time_s, 2 * i};
     if (fits_turned) ranks[2 * i + 1] = {on_point, both.turned.cost, both.turned.time_s, 2 * i + 1};
   });

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <set>
 
+#include "fixtures/models.h"
 #include "model/printer.h"
+#include "shape/soup.h"
 
 namespace packmerger {
 namespace {
@@ -123,6 +125,51 @@ TEST(StandBest, NeverStandsOnAnEdgeWhatIsSliced) {
   EXPECT_GE(std::count_if(standing.vertices_begin(), standing.vertices_end(),
                           [&](const auto& v) { return standing.point(v)[2] < 1e-6; }),
             3);
+}
+
+// A plate with pins on both sides. Each is as wide as two lines, though not its mean distance from
+// its border.
+TEST(StandBest, StandsOnPinsWhatIsSliced) {
+  TriangleSoup brush = fixtures::box(Vec3(0, 0, 0.6), Vec3(24, 24, 1.6));
+  for (double x = 0.5; x < 24; x += 2)
+    for (double y = 0.5; y < 24; y += 2)
+      append(brush, fixtures::box(Vec3(x, y, 0), Vec3(x + 0.8, y + 0.8, 2.2)));
+  const auto best = stand_best({std::make_shared<const Mesh>(closed_mesh(brush))},
+                               read_profile("marlin"), Progress());
+  ASSERT_TRUE(best);
+  EXPECT_NEAR(extent(*best).sizes().z(), 2.2, 1e-9);
+}
+
+// A tube whose wall is thinner than a line has a wide outline only.
+TEST(StandBest, NeverStandsOnATubeThinnerThanALine) {
+  const auto ring = [](double z) {
+    TriangleSoup at;
+    for (const double inset : {0.0, 0.2})
+      for (const Vec2& corner : {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)})
+        at.points.emplace_back(inset + corner.x() * (60 - 2 * inset),
+                               inset + corner.y() * (60 - 2 * inset), z);
+    return at;
+  };
+  TriangleSoup tube = ring(0);  // outside 0 to 3, inside 4 to 7
+  append(tube, ring(1.2));
+  const auto quad = [&](int a, int b, int c, int d) {
+    tube.triangles.push_back({a, b, c});
+    tube.triangles.push_back({a, c, d});
+  };
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    quad(i, j, j + 8, i + 8);
+    quad(j + 4, i + 4, i + 12, j + 12);
+    quad(j, i, i + 4, j + 4);
+    quad(i + 8, j + 8, j + 12, i + 12);
+  }
+  const auto best = stand_best({std::make_shared<const Mesh>(closed_mesh(tube))},
+                               read_profile("marlin"), Progress());
+  ASSERT_TRUE(best);
+  EXPECT_GT(
+      std::abs(best->parts[0].pose.linear()(2, 0)) + std::abs(best->parts[0].pose.linear()(2, 1)),
+      0.5)
+      << "it lies";
 }
 
 TEST(StandBest, TurnsToFitAndSaysWhenItCannot) {
