@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kPlanner = 16;
 constexpr double kReport_s = 1;
+constexpr double kChatter_s = 1;
 
 }  // namespace
 
@@ -59,6 +60,11 @@ void Marlin::report_by_itself(double now_s) {
   if (now_s >= next_position_s_) {
     say(position());
     next_position_s_ = now_s + pace_.line_s(positions_every_s_);
+  }
+  if (now_s >= next_chatter_s_) {
+    say("echo:Active Extruder: 0");
+    say("// probe accuracy: 0.01");
+    next_chatter_s_ = now_s + pace_.line_s(kChatter_s);
   }
 }
 

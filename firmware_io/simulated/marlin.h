@@ -19,6 +19,7 @@ class Marlin : public Firmware {
   explicit Marlin(Pace pace, MarlinTraits traits = {}) : pace_(pace), traits_(std::move(traits)) {
     if (traits_.reports_unasked) report_every(1, 0);
     if (traits_.positions_unasked) positions_every_s_ = 1, next_position_s_ = 0;
+    if (traits_.chatters) next_chatter_s_ = 0;
   }
 
   void receive(std::string_view bytes, double now_s) override;
@@ -75,7 +76,9 @@ class Marlin : public Firmware {
   void kill(const std::string& why);
   std::string temperatures(double now_s) const;
   std::string position() const;
-  double next_report_by_itself_s() const { return std::min(next_auto_s_, next_position_s_); }
+  double next_report_by_itself_s() const {
+    return std::min({next_auto_s_, next_position_s_, next_chatter_s_});
+  }
 
   Pace pace_;
   MarlinTraits traits_;
@@ -109,6 +112,7 @@ class Marlin : public Firmware {
   bool says_position_ = false;    // before the ok, as behind homing
   double positions_every_s_ = 0;  // M154
   double next_position_s_ = kNever;
+  double next_chatter_s_ = kNever;
   double busy_every_s_ = 2;  // M113
   std::size_t oks_ = 0;
 

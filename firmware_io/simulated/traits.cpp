@@ -28,6 +28,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"resend_short", &T::resend_short},
                                  {"filament_change", &T::filament_change},
                                  {"positions_unasked", &T::positions_unasked},
+                                 {"chatters", &T::chatters},
                                  {"heats_quietly", &T::heats_quietly},
                                  {"doubled_ok", &T::doubled_ok},
                                  {"counts_lines", &T::counts_lines},

@@ -28,6 +28,7 @@ struct MarlinTraits {
   bool resend_short = false;       // "rs N3" for "Resend: 3"
   bool filament_change = true;     // knows M600, and asks its user twice; else an unknown command
   bool positions_unasked = false;  // tells its position every second from its start, as by M154 S1
+  bool chatters = false;           // says every second from its start what means nothing
   bool heats_quietly = false;      // waits for heat with neither "busy" nor "W:", as Klipper does
   bool doubled_ok = false;         // every fifth ok comes twice
   bool counts_lines = true;        // else it looks at neither number nor checksum, nor asks for a

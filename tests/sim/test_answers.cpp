@@ -36,6 +36,66 @@ TEST(Life, AQuarterOfAnHourOfHeatingInKlippersWay) {
   }
 }
 
+// Holds its heat for ten minutes before it says ok: the temperature stands still meanwhile, and
+// nothing but what is told of the wait (W:) proves that it is alive.
+class Loiterer : public simulated::Firmware {
+ public:
+  explicit Loiterer(std::string report) : report_(std::move(report)) {}
+
+  void receive(std::string_view bytes, double now_s) override {
+    for (const char c : bytes) {
+      if (c != '\n') {
+        line_ += c;
+        continue;
+      }
+      if (!line_.empty()) waiting_.push_back(line_);
+      line_.clear();
+    }
+    advance(now_s);
+  }
+  void advance(double now_s) override {
+    while (!waiting_.empty() || until_s_ > 0) {
+      if (until_s_ == 0 && command_of(waiting_.front()) == "M109 S200") {
+        until_s_ = now_s + 600;
+        next_s_ = now_s;
+      }
+      if (now_s < until_s_) break;
+      output_ += command_of(waiting_.front()) == "M114" ? "X:0 Y:0 Z:0 E:0\nok\n"
+                                                        : polite(waiting_.front());
+      executed_.push_back(command_of(waiting_.front()));
+      waiting_.pop_front();
+      until_s_ = 0;
+    }
+    if (until_s_ == 0 || now_s < next_s_) return;
+    output_ += report_;
+    next_s_ = now_s + 1;
+  }
+  double next_event_s() const override {
+    return until_s_ > 0 ? std::min(next_s_, until_s_) : simulated::kNever;
+  }
+
+ private:
+  std::string report_;
+  std::string line_;
+  std::deque<std::string> waiting_;
+  double until_s_ = 0;
+  double next_s_ = 0;
+};
+
+TEST(Life, IsProvenByAWaitThatIsToldThoughTheHeatStandsStill) {
+  for (const bool tells : {true, false}) {
+    Loiterer firmware(tells ? "T:200.0 /200.0 B:60.0 /60.0 @:64 W:9\n"
+                            : "T:200.0 /200.0 B:60.0 /60.0 @:64\n");
+    FaultyPort port(firmware);
+    PrintControl control;
+    StreamOptions options = scenario_options();
+    options.timeout_s = 5;
+    const auto failure = print(port, true, "G28\nM109 S200\nG1 X1\n", control, {}, options);
+    EXPECT_EQ(failure.has_value(), !tells);
+    EXPECT_EQ(port.now_s() > 600, tells);
+  }
+}
+
 // Reports come for ever, and nothing moves.
 TEST(Life, AHeaterThatStandsStillIsNoSign) {
   HeatWatch watch;
@@ -81,7 +141,7 @@ TEST(Life, ADwellMayTakeWhatItStates) {
 }
 
 TEST(Life, ALostOkIsNoticedWhateverThePrinterTellsUnasked) {
-  for (const char* trait : {"positions_unasked", "reports_unasked"}) {
+  for (const char* trait : {"positions_unasked", "reports_unasked", "chatters"}) {
     MarlinTraits traits;
     simulated::set_trait(traits, trait);
     Marlin firmware(Pace{1, true}, traits);
@@ -89,7 +149,7 @@ TEST(Life, ALostOkIsNoticedWhateverThePrinterTellsUnasked) {
     lose_answers_behind(port, 20);
     PrintControl control;
     const auto failure = print(port, true, joined(gcode_program(200)), control);
-    EXPECT_FALSE(failure) << failure->what();
+    EXPECT_FALSE(failure) << trait << failure->what();
     EXPECT_EQ(only(port.executed(), gcode_program(200)), gcode_program(200));
     EXPECT_LT(port.now_s(), 60) << trait;
   }

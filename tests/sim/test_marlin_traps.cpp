@@ -272,6 +272,14 @@ TEST(MarlinTraps, TellsItsPositionUnasked) {
   EXPECT_EQ(wire.says("", 3.5), "");
 }
 
+TEST(MarlinTraps, ChattersOfNothing) {
+  Marlin marlin(kRealTime, with("chatters"));
+  Wire wire(marlin);
+  const std::string said = wire.says("", 3.5);
+  EXPECT_GE(count(said, "echo:"), 3U);
+  EXPECT_GE(count(said, "// "), 3U);
+}
+
 TEST(MarlinTraps, HeatsWithoutAnySignButTemperatures) {
   Marlin marlin(kRealTime, with("heats_quietly"));
   Wire wire(marlin);

@@ -153,7 +153,20 @@ TEST_F(MarlinPause, CancelWhilePausedActsWithinASecond) {
   EXPECT_EQ(count(port.executed(), "G1 Z-7 F600"), 0u) << "it does not go on";
 }
 
-TEST_F(MarlinPause, TheMachineAsksForIt) {
+MarlinTraits panel(bool blank) {
+  MarlinTraits traits;
+  traits.comment_blank = blank;
+  return traits;
+}
+
+// "//action:pause" as Marlin writes it, "// action:pause" as Klipper and Prusa's firmware do.
+class MarlinPanel : public ::testing::TestWithParam<bool>, protected MarlinDay {
+ protected:
+  MarlinPanel() : MarlinDay(panel(GetParam())) {}
+};
+INSTANTIATE_TEST_SUITE_P(Blank, MarlinPanel, ::testing::Bool());
+
+TEST_P(MarlinPanel, AsksForAPause) {
   day.act = [&] { firmware.tell_host("pause"); };
   day.go_on = [&] { firmware.tell_host("resume"); };
   const auto failure = print(parking());
@@ -165,9 +178,10 @@ TEST_F(MarlinPause, TheMachineAsksForIt) {
 }
 
 // It has parked by itself, so nothing of ours is executed; people may let it go on too.
-TEST_F(MarlinPause, TheMachineStandsStillAlready) {
+TEST_P(MarlinPanel, SaysThatItStandsStillAlready) {
+  const bool by_hand = !GetParam();
   day.act = [&] { firmware.tell_host("paused"); };
-  day.go_on = [&] { control.resume(); };
+  day.go_on = [&] { by_hand ? control.resume() : firmware.tell_host("resumed"); };
   const auto failure = print(parking());
   ASSERT_FALSE(failure) << failure->what();
   EXPECT_EQ(day.states, kPausedOnce);
@@ -176,7 +190,7 @@ TEST_F(MarlinPause, TheMachineStandsStillAlready) {
   EXPECT_EQ(count(port.executed(), "G1 Z7 F600"), 0u);
 }
 
-TEST_F(MarlinPause, CancelledAtItsPanel) {
+TEST_P(MarlinPanel, Cancels) {
   day.act = [&] { firmware.tell_host("cancel"); };
   const auto failure = print(scenario_options());
   ASSERT_TRUE(failure);

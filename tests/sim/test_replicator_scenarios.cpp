@@ -202,6 +202,7 @@ TEST(Replicator, WhoLeavesHasTheHeatersTurnedOff) {
   const auto failure = print(port, false, x3g_program(100).bytes, control);
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->fault(), Fault::kInterrupted);
+  EXPECT_THAT(failure->what(), HasSubstr("ended at once"));
   EXPECT_LT(port.now_s(), 20.5);
   port.leave_alone(5);
   EXPECT_EQ(port.executed().back(), "abort");
