@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/gcode_channel.h"
 #include "firmware_io/gcode_place.h"
