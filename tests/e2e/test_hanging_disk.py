@@ -2,9 +2,11 @@
 """A share whose server is gone hangs whoever touches it: the daemon answers, prints, cancels and ends all the same, and
 nothing that lay there is lost or taken twice once it is back."""
 import json
+import os
 import pathlib
 import signal
 import socket
+import subprocess
 import sys
 import tempfile
 import time
@@ -163,6 +165,45 @@ def cube():
 
 
 CUBE = cube()
+
+
+class Stopped(unittest.TestCase):
+    """Whatever verb reads a model from there: a stop is obeyed, although the read never returns."""
+
+    def test_every_verb_that_computes_obeys(self):
+        with tempfile.TemporaryDirectory(prefix="packmerger-hanging-") as holder:
+            folder = pathlib.Path(holder)
+            share, when, temporary = folder / "share", folder / "when", folder / "temporary"
+            for each in (share, temporary):
+                each.mkdir()
+            (share / "cube.stl").write_text(CUBE)
+            when.write_text("")
+            for verb in (["prepare", share / "cube.stl", "--profile", "objet30", "--out", folder / "job"],
+                         ["compare", share / "cube.stl", "--profile", "objet30"],
+                         ["calibrate", "objet30", "--print", share / "cube.stl", "--took", "1h"]):
+                with self.subTest(verb[0]):
+                    told = folder / f"told-{verb[0]}"
+                    child = subprocess.Popen(
+                        [program.binary(), *verb], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                        start_new_session=True,
+                        env={**os.environ, "TMPDIR": str(temporary), "LD_PRELOAD": program.binary("libhanging_disk.so"),
+                             "HANGING_DISK": str(share), "HANGING_DISK_WHEN": str(when), "HANGING_DISK_TOLD": str(told),
+                             "HANGING_DISK_ONLY": "read"})
+                    self.addCleanup(child.kill)
+                    while not (told.exists() and told.stat().st_size > 0):
+                        self.assertIsNone(child.poll(), "it reads the model")
+                        time.sleep(0.05)
+                    started = time.monotonic()
+                    child.terminate()
+                    out, err = child.communicate(timeout=60)
+                    self.assertLess(time.monotonic() - started, 10)
+                    self.assertEqual((child.returncode, out), (130, ""), err)
+                    self.assertIn("Interrupted", err)
+                    self.assertFalse((folder / "job").exists())
+                    self.assertEqual(list(temporary.iterdir()), [])
+                    with self.assertRaises(ProcessLookupError, msg="a child still runs"):
+                        os.killpg(child.pid, 0)
+
 
 if __name__ == "__main__":
     unittest.main()
