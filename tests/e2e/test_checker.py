@@ -4,6 +4,7 @@ import hashlib
 import pathlib
 import sys
 import tempfile
+import types
 import unittest
 
 import numpy as np
@@ -14,9 +15,10 @@ import synthetic
 from breaks import BREAKS, change_part, path_of_first, set_at
 from check_job import check
 from checker import figures, meshes, removal, separation, solids, triangles
-from checker.assembly import filled_crevice
+from checker.assembly import check_coverage, filled_crevice
 from checker.columns import Grid, intervals
-from checker.outside import Matter, bounds_by_angle, outer_sheets, winding_by_angle
+from checker.outside import Matter, MatterByAngle, bounds_by_angle, outer_sheets, winding_by_angle
+from checker.report import Report
 from checker.tree import Tree
 from shapes import sphere
 
@@ -156,11 +158,29 @@ class Geometry(unittest.TestCase):
     def test_only_a_filled_and_narrow_crevice_need_not_be_covered(self):
         block = synthetic.polycube([0, 10], [0, 10], [0, 10], lambda i, j, k: True)
         points, normals = np.array([[5.0, 5.1, 7.3]]), np.array([[1.0, 0.0, 0.0]])
-        for width_mm, is_narrow in ((0.01, True), (0.04, True), (0.2, False)):
+        for width_mm, is_narrow in ((0.01, True), (0.04, True), (0.12, False)):
             halves = synthetic.polycube([0, 5, 5 + width_mm, 10], [0, 10], [0, 10], lambda i, j, k: i != 1)
             matter = Matter(halves, is_open=False)
             self.assertEqual(filled_crevice(matter, block, points, normals, 0.1).tolist(), [is_narrow])
+            self.assertEqual(filled_crevice(matter, block, points, normals, 0.3).tolist(), [is_narrow])
             self.assertFalse(filled_crevice(matter, block + [0, 0, 8], points, normals, 0.1).any())
+            lidless = halves[halves[:, :, 2].min(axis=1) < 9]
+            self.assertEqual(filled_crevice(MatterByAngle(lidless), block, points - [0, 0, 4], normals, 0.1).tolist(),
+                             [is_narrow])
+
+    def test_a_model_of_filled_crevices_is_not_covered(self):
+        block = synthetic.polycube([0, 10], [0, 10], [0, 10], lambda i, j, k: True)
+        parts = types.SimpleNamespace(all_corners=lambda: block)
+        for size_mm, failed in ((0.5, []), (6.0, ["covered by the parts", "few points"])):
+            slit = synthetic.polycube([0, 5, 5.02, 10], [0, 10 - size_mm, 10], [0, 10 - size_mm, 10],
+                                      lambda i, j, k: (i, j, k) != (1, 1, 1))
+            ends = (slit[:, :, 1:] == 10 - size_mm).all(axis=1).any(axis=1)  # faced by nothing near
+            slit = slit[~ends]
+            report = Report()
+            check_coverage(parts, slit, Matter(slit, is_open=False), 0.1, 0, report)
+            self.assertEqual(len(report.failures()), len(failed))
+            for row, name in zip(report.failures(), failed):
+                self.assertIn(name, row["check"])
 
     def test_topology_of_a_part_is_clean(self):
         corners = synthetic.part_corners(1)

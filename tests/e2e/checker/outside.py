@@ -47,6 +47,16 @@ def winding_by_angle(points, corners):
     return found
 
 
+class MatterByAngle:
+    """Matter of a surface with holes: slow, but no line has to miss them."""
+
+    def __init__(self, corners):
+        self.corners = corners
+
+    def holds(self, points):
+        return winding_by_angle(points, self.corners) > 0.5
+
+
 def bounds_by_angle(points, normals, corners):
     """Whether the matter of a surface with holes, where it goes round more than half, ends at the points."""
     by = BESIDE_MM * normals
