@@ -94,13 +94,6 @@ void GcodeStream::heed_probe(const GcodeReply& ok) {
   if (executed && line_count_ == LineCount::kUnknown) line_count_ = LineCount::kIgnored;
 }
 
-void GcodeStream::ask_position() {
-  told_.reset();
-  asks_position_ = true;
-  positions_owed_ += 2;  // the answer may be doubled on its way
-  ask("M114");
-}
-
 std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
   GcodeFate fate = GcodeFate::kUnknown;
   told_.reset();
@@ -109,7 +102,12 @@ std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
         if (told_) fate = fate_of(trace_, *told_, answered);
         return fate != GcodeFate::kUnknown;
       },
-      [&] { ask_position(); });
+      [&] {
+        told_.reset();
+        asks_position_ = true;
+        positions_owed_ += 2;  // the answer may be doubled on its way
+        ask("M114");
+      });
   if (again || cancelling_) return again;
   if (fate == GcodeFate::kTaken) {
     taken_for_granted_ = false;
@@ -122,28 +120,6 @@ std::optional<std::size_t> GcodeStream::prove_by_position(bool answered) {
   if (!fails) return open_;
   // One that may count after all asks for what it lacks.
   if (line_count_ == LineCount::kIgnored) fail_in_doubt(answered);
-  return std::nullopt;
-}
-
-// What a macro did, and which modes it left, the printer itself tells, as long as everything is
-// answered as it should be: where it is behind the macro, and where the next moves lead.
-std::optional<std::size_t> GcodeStream::follow_behind_macro() {
-  if (cancelling_ || between_ || in_doubt_ || was_silent_ || open_ <= settled_) return std::nullopt;
-  const std::string line = command(open_);
-  if (!place_.wants_report(line)) return std::nullopt;
-  // A printer that knows macros may count no lines.
-  if (!std::exchange(asked_whether_it_counts_, true))
-    if (const auto again = learn_line_count()) return again;
-  if (line_count_ != LineCount::kIgnored) return std::nullopt;
-  told_.reset();
-  const auto again =
-      ask_until([&] { return in_doubt_ || was_silent_ || told_; }, [&] { ask_position(); });
-  if (again) return again;
-  if (in_doubt_ || was_silent_) {
-    in_doubt_ = was_silent_ = false;
-    return prove_by_position(true);
-  }
-  if (told_) place_.learn_modes(line, trace_, *told_);
   return std::nullopt;
 }
 

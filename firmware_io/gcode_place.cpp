@@ -1,10 +1,12 @@
 #include "firmware_io/gcode_place.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
+#include "firmware_io/ascii.h"
 #include "firmware_io/gcode.h"
 #include "gcode/known_codes.h"
 
@@ -31,31 +33,29 @@ bool differ(const GcodePoint& a, const GcodePoint& b) {
   return false;
 }
 
-bool is_move(const GcodeLine& line) { return line.is('G', 0) || line.is('G', 1); }
-
-bool near(const std::optional<double>& a, double b, double by) {
-  return a && std::abs(*a - b) <= by;
+// Klipper's own commands that move nothing and leave the modes and the origin as they are, after
+// its sources; slicers write some of them with every feature. Each may be executed twice.
+bool is_klipper_setting(std::string_view command) {
+  static constexpr std::array<std::string_view, 24> kWords = {
+      "EXCLUDE_OBJECT_DEFINE",  "EXCLUDE_OBJECT_END",
+      "EXCLUDE_OBJECT_START",   "RESPOND",
+      "SAVE_GCODE_STATE",       "SAVE_VARIABLE",
+      "SET_DISPLAY_TEXT",       "SET_FAN_SPEED",
+      "SET_FILAMENT_SENSOR",    "SET_GCODE_VARIABLE",
+      "SET_HEATER_TEMPERATURE", "SET_IDLE_TIMEOUT",
+      "SET_INPUT_SHAPER",       "SET_LED",
+      "SET_LED_TEMPLATE",       "SET_PIN",
+      "SET_PRESSURE_ADVANCE",   "SET_PRINT_STATS_INFO",
+      "SET_RETRACTION",         "SET_TEMPERATURE_FAN_TARGET",
+      "SET_TMC_CURRENT",        "SET_VELOCITY_LIMIT",
+      "TEMPERATURE_WAIT",       "TURN_OFF_HEATERS"};
+  std::string word(command.substr(0, command.find_first_of(" \t")));
+  for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return ascii::one_of(word, kWords);
 }
 
-bool leads_to(const GcodeTrace& line, std::size_t axis, const std::optional<double>& place,
-              double by) {
-  const std::vector<double>& to = line.readings[axis];
-  return std::any_of(to.begin(), to.end(), [&](double each) { return near(place, each, by); });
-}
-
-// Whether each axis that nobody knows how to read is where it leads in one of the ways.
-bool fits_readings(const GcodeTrace& line, const GcodePoint& told) {
-  for (std::size_t i = 0; i < kAxes.size(); ++i)
-    if (!line.readings[i].empty() && !leads_to(line, i, told[i], kRounding_mm)) return false;
-  return true;
-}
-
-// Whether one of those axes leads elsewhere in all of the ways.
-bool moves_anyway(const GcodeTrace& line) {
-  for (std::size_t i = 0; i < kAxes.size(); ++i)
-    if (!line.readings[i].empty() && !leads_to(line, i, line.before[i], 2 * kRounding_mm))
-      return true;
-  return false;
+bool is_move(const GcodeLine& line) {
+  return line.letter() == 'G' && line.sub_number() == 0 && line.number() <= 3;
 }
 
 // The axes of `point` that `other` knows too.
@@ -86,7 +86,7 @@ GcodeTrace GcodePlace::follow(std::string_view command) {
   trace.before = at_;
   trace.repeatable = true;
   if (is_macro(command) && !line.is_empty())
-    trace.repeatable = lose();
+    trace.repeatable = is_klipper_setting(command) || lose();
   else if (line.letter() == 'G' && line.sub_number() == 0)
     trace.repeatable = line.readable() ? follow_g(line) : lose();
   else if (line.letter() == 'M' && line.sub_number() == 0)
@@ -96,55 +96,13 @@ GcodeTrace GcodePlace::follow(std::string_view command) {
   else if (!line.is_empty())
     trace.repeatable = lose();
   trace.after = at_;
-  if (behind_macro_ && is_move(line) && line.readable())
-    for (std::size_t i = 0; i < kAxes.size(); ++i)
-      if (const auto word = line.value(kAxes[i]); word && trace.before[i] && !at_[i])
-        for (const Reading& reading : readings_of(i, *word, *trace.before[i]))
-          trace.readings[i].push_back(reading.to);
+  trace.is_unreadable = is_move(line) && !can_read(line);
   return trace;
 }
 
 void GcodePlace::learn(const GcodePoint& told) {
   for (std::size_t i = 0; i < kAxes.size(); ++i)
     if (!at_[i]) at_[i] = told[i];
-}
-
-bool GcodePlace::wants_report(std::string_view command) const {
-  if (!behind_macro_ || (relative_ && relative_e_ && inches_)) return false;
-  if (is_macro(command)) return true;
-  const GcodeLine line(command, GcodeRules::kMarlin);
-  const bool moves = line.has('X') || line.has('Y') || line.has('Z');
-  return is_move(line) &&
-         ((moves && (!relative_ || !inches_)) || (line.has('E') && (!relative_e_ || !inches_)));
-}
-
-std::vector<GcodePlace::Reading> GcodePlace::readings_of(std::size_t axis, double word,
-                                                         double before) const {
-  constexpr double kInch_mm = 25.4;
-  const std::optional<bool>& known = axis == kE ? relative_e_ : relative_;
-  std::vector<Reading> readings;
-  for (const bool relative : {false, true})
-    for (const bool inches : {false, true})
-      if (known.value_or(relative) == relative && inches_.value_or(inches) == inches)
-        readings.push_back(
-            {word * (inches ? kInch_mm : 1) + (relative ? before : 0), relative, inches});
-  return readings;
-}
-
-void GcodePlace::learn_modes(std::string_view command, const GcodeTrace& trace,
-                             const GcodePoint& told) {
-  const GcodeLine line(command, GcodeRules::kMarlin);
-  for (std::size_t i = 0; i < kAxes.size(); ++i) {
-    if (trace.readings[i].empty() || !told[i]) continue;
-    std::vector<Reading> readings = readings_of(i, *line.value(kAxes[i]), *trace.before[i]);
-    std::erase_if(readings, [&](const Reading& reading) {
-      return std::abs(reading.to - *told[i]) > 2 * kRounding_mm;
-    });
-    if (readings.size() != 1 || std::abs(readings[0].to - *told[i]) > kRounding_mm) continue;
-    (i == kE ? relative_e_ : relative_) = readings[0].relative;
-    inches_ = readings[0].inches;
-  }
-  learn(told);
 }
 
 bool GcodePlace::follow_g(const GcodeLine& line) {
@@ -220,23 +178,28 @@ bool GcodePlace::leave(const GcodeLine& line) {
   return stays;
 }
 
+// Whether it is known of any of its axes how the move is read.
+bool GcodePlace::can_read(const GcodeLine& line) const {
+  const bool moves = line.has('X') || line.has('Y') || line.has('Z');
+  if (!moves && !line.has('E')) return true;
+  return inches_ && ((moves && relative_) || (line.has('E') && relative_e_));
+}
+
 bool GcodePlace::lose() {
   at_ = {};
   relative_.reset();
   relative_e_.reset();
   inches_.reset();
-  behind_macro_ = true;
   return false;
 }
 
 GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {
-  const bool fits = fits_readings(line, told);
-  if (differ(line.before, line.after) || moves_anyway(line)) {
-    if (agree(told, line.after) && fits) return GcodeFate::kTaken;
+  if (differ(line.before, line.after)) {
+    if (agree(told, line.after)) return GcodeFate::kTaken;
     return agree(told, line.before) ? GcodeFate::kMissed : GcodeFate::kUnknown;
   }
-  if (!agree(told, where_known(line.after, line.before)) || !fits) return GcodeFate::kUnknown;
-  if (answered) return GcodeFate::kTaken;
+  if (!agree(told, where_known(line.after, line.before))) return GcodeFate::kUnknown;
+  if (answered && !line.is_unreadable) return GcodeFate::kTaken;
   return line.repeatable ? GcodeFate::kRepeatable : GcodeFate::kUnknown;
 }
 

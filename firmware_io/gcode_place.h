@@ -4,7 +4,6 @@
 #include <array>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "gcode/gcode_line.h"
 
@@ -21,8 +20,7 @@ struct GcodeTrace {
   GcodePoint before;
   GcodePoint after;
   bool repeatable = false;
-  // Where an axis may be after it, mm, as long as nobody knows how the line is read.
-  std::array<std::vector<double>, 4> readings;
+  bool is_unreadable = false;  // a move, relative or not, mm or inches: no place tells what it did
 };
 
 class GcodePlace {
@@ -33,27 +31,13 @@ class GcodePlace {
   // Where the head is behind the last line, of the axes that were not known.
   void learn(const GcodePoint& told);
 
-  // Whether M114 behind this line tells what is not known any more since a macro: the place behind
-  // the macro itself; behind a move, whether moves are relative or in inches.
-  bool wants_report(std::string_view command) const;
-  // What the printer tells then. trace: the line's own. Nothing is learned from a move that leads
-  // to one and the same place however it is read, or to none of those.
-  void learn_modes(std::string_view command, const GcodeTrace& trace, const GcodePoint& told);
-
  private:
-  struct Reading {
-    double to = 0;
-    bool relative = false;
-    bool inches = false;
-  };
-  // Of a word of a move, by what is known of the modes.
-  std::vector<Reading> readings_of(std::size_t axis, double word, double before) const;
-
   // Each returns whether the line is repeatable.
   bool follow_g(const GcodeLine& line);
   bool follow_m(const GcodeLine& line);
   bool move(const GcodeLine& line);
   bool leave(const GcodeLine& line);
+  bool can_read(const GcodeLine& line) const;
   bool lose();  // a line that may have done anything
 
   GcodePoint at_;
@@ -62,7 +46,6 @@ class GcodePlace {
   // G90 and G91 are for E too in some firmwares and not in others; empty where that decides.
   std::optional<bool> relative_e_ = false;
   std::optional<bool> inches_ = false;
-  bool behind_macro_ = false;
 };
 
 enum class GcodeFate {

@@ -89,8 +89,6 @@ std::size_t GcodeStream::exchange(std::size_t number) {
   // Several lines on their way can be put right only where the printer counts them.
   if (options_.window_bytes > 0 && !std::exchange(asked_whether_it_counts_, true))
     if (const auto again = learn_line_count()) return *again;
-  if (gives)
-    if (const auto again = follow_behind_macro()) return *again;
   if (taken_for_granted_) careful_until_ = last_ + kCareful;
   unproven_ = taken_for_granted_ ? unproven_ + 1 : 0;
   if (unproven_ > kMaxUnproven)

@@ -106,9 +106,7 @@ class GcodeStream {
   std::optional<std::size_t> ask_until(const IsSettled& is_settled, const Ask& ask_once);
   std::optional<std::size_t> learn_line_count();
   void heed_probe(const GcodeReply& ok);
-  void ask_position();
   std::optional<std::size_t> prove_by_position(bool answered);
-  std::optional<std::size_t> follow_behind_macro();
   [[noreturn]] void fail_in_doubt(bool answered) const;
 
   // gcode_complaints.cpp: what the machine finds fault with

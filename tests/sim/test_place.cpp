@@ -67,71 +67,14 @@ TEST(Place, IsWhatM114Tells) {
   EXPECT_EQ(after({"G1 X1 Y1 E1", "M104 S200", "M117 X5", "M84", "T0"}), nowhere);
   for (const char* macro : {"PRINT_START BED=60", "TIMELAPSE", "MOVE_AWAY", "G1 X\"1\""})
     EXPECT_EQ(after({"G1 X1 Y1", macro, "G1 Y2"}), nowhere) << "maybe relative, maybe inches";
+  for (const char* setting :
+       {"SET_VELOCITY_LIMIT ACCEL=9", "set_fan_speed FAN=a SPEED=1", "RESPOND"})
+    EXPECT_EQ(after({"G1 X1 Y1", setting, "G1 Y2"}), (GcodePoint{1.0, 2.0})) << setting;
+  EXPECT_EQ(after({"G1 X1 Y1", "SET_GCODE_OFFSET Z=1", "G1 Y2"}), nowhere) << "another origin";
   EXPECT_EQ(after({"G1 X1 Y1", "PRINT_START", "G21", "G90", "G1 Y2"}),
             (GcodePoint{std::nullopt, 2.0}));
   EXPECT_EQ(after({"G1 X1 Y1 Z1", "G92"}), nowhere) << "all are 0, or nothing was done";
   EXPECT_EQ(after({"G20", "G1 X1"}), nowhere);
-}
-
-// The place behind `line`, given behind a macro that left the head at `before`; learned from what
-// is told behind it and behind the line.
-GcodePoint after_macro(const GcodePoint& before, const std::string& line, const GcodePoint& told,
-                       const std::string& next) {
-  GcodePlace place;
-  EXPECT_FALSE(place.wants_report("G1 X1"));
-  const GcodeTrace macro = place.follow("LAYER_MACRO");
-  EXPECT_TRUE(place.wants_report("LAYER_MACRO"));
-  place.learn_modes("LAYER_MACRO", macro, before);
-  const GcodeTrace trace = place.follow(line);
-  EXPECT_TRUE(place.wants_report(line)) << line;
-  place.learn_modes(line, trace, told);
-  return place.follow(next).after;
-}
-
-TEST(Place, BehindAMacroIsLearnedFromTwoReports) {
-  const GcodePoint before = {50.0, 60.0, 2.0, 10.0};
-  const std::string next = "G1 X1 Y1 E1";
-  EXPECT_EQ(after_macro(before, "G1 X70 Y80 E0.5", {70.0, 80.0, 2.0, 10.5}, next),
-            (GcodePoint{1.0, 1.0, 2.0, 11.5}));
-  EXPECT_EQ(after_macro(before, "G1 X7 Y8 E11", {57.0, 68.0, 2.0, 11.0}, next),
-            (GcodePoint{58.0, 69.0, 2.0, 1.0}));
-  EXPECT_EQ(after_macro(before, "G1 X1 E0.5", {25.4, 60.0, 2.0, 22.7}, next),
-            (GcodePoint{std::nullopt, std::nullopt, 2.0}))
-      << "inches";
-  for (const auto& [line, told] : std::vector<std::pair<std::string, GcodePoint>>{
-           {"G1 X0", {50.0, 60.0, 2.0, 10.0}},      // relative, in either unit
-           {"G1 X70", {50.0, 60.0, 2.0, 10.0}},     // it got lost
-           {"G1 X7 Y8", {64.0, 76.0, 2.0, 10.0}},   // it was doubled
-           {"G1 X70", {70.008, 60.0, 2.0, 10.0}}})  // neither there nor elsewhere
-    EXPECT_EQ(after_macro(before, line, told, next)[0], std::nullopt) << line;
-  EXPECT_EQ(after_macro({0.0, 0.0, 0.0, 0.0}, "G1 X5 E0.1", {5.0, 0.0, 0.0, 0.1}, next),
-            (GcodePoint{std::nullopt, std::nullopt, 0.0}))
-      << "from the origin, absolute and relative lead to one place";
-}
-
-// However it is read, it leads elsewhere.
-TEST(Place, TellsTheFateOfAMoveThatNobodyKnowsHowToRead) {
-  const auto fate = [](const std::string& line, const GcodePoint& told) {
-    GcodePlace place;
-    const GcodeTrace macro = place.follow("LAYER_MACRO");
-    place.learn_modes("LAYER_MACRO", macro, {50.0, 60.0, 2.0, 10.0});
-    return fate_of(place.follow(line), told, true);
-  };
-  EXPECT_EQ(fate("G1 X7 E0.5", {57.0, 60.0, 2.0, 10.5}), GcodeFate::kTaken);
-  EXPECT_EQ(fate("G1 X7 E0.5", {7.0, 60.0, 2.0, 10.5}), GcodeFate::kTaken);
-  EXPECT_EQ(fate("G1 X7 E0.5", {50.0, 60.0, 2.0, 10.0}), GcodeFate::kMissed);
-  EXPECT_EQ(fate("G1 X7 E0.5", {64.0, 60.0, 2.0, 11.0}), GcodeFate::kUnknown) << "doubled";
-  EXPECT_EQ(fate("G1 X70 E0.5", {70.0, 60.0, 2.0, 11.0}), GcodeFate::kUnknown) << "doubled";
-  EXPECT_EQ(fate("G1 X50", {50.0, 60.0, 2.0, 10.0}), GcodeFate::kTaken) << "it has an answer";
-  EXPECT_EQ(fate("G1 X7 E0.5", {57.0, std::nullopt, 2.0}), GcodeFate::kUnknown);
-}
-
-TEST(Place, NothingIsAskedOnceItIsKnown) {
-  GcodePlace place;
-  place.follow("PRINT_START");
-  EXPECT_FALSE(place.wants_report("M104 S200")) << "it leads nowhere";
-  for (const char* line : {"G21", "G90", "M83"}) place.follow(line);
-  EXPECT_FALSE(place.wants_report("G1 X1 E1"));
 }
 
 TEST(Place, IsReadFromAReport) {
@@ -152,6 +95,10 @@ TEST(Place, TellsALinesFate) {
   EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kRepeatable);
   const GcodeTrace macro = place.follow("START_PRINT");
   EXPECT_EQ(fate_of(macro, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kUnknown);
+  const GcodeTrace relative = place.follow("G1 X3 E1");
+  EXPECT_EQ(fate_of(relative, {13.0, 0.0, 0.0, 1.0}, true), GcodeFate::kUnknown)
+      << "it may have been made twice, or not at all";
+  EXPECT_EQ(fate_of(place.follow("G1 F1800"), {13.0, 0.0, 0.0, 1.0}, true), GcodeFate::kTaken);
 }
 
 }  // namespace
