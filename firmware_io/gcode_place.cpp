@@ -27,10 +27,21 @@ bool agree(const GcodePoint& a, const GcodePoint& b) {
 }
 
 // So far apart that what is told cannot be both.
+bool differ_at(std::size_t axis, const GcodePoint& a, const GcodePoint& b) {
+  return a[axis] && b[axis] && std::abs(*a[axis] - *b[axis]) > 2 * kRounding_mm;
+}
+
 bool differ(const GcodePoint& a, const GcodePoint& b) {
   for (std::size_t i = 0; i < kAxes.size(); ++i)
-    if (a[i] && b[i] && std::abs(*a[i] - *b[i]) > 2 * kRounding_mm) return true;
+    if (differ_at(i, a, b)) return true;
   return false;
+}
+
+// Of every axis that the line moves: what was cut short on its way proves nothing.
+bool tells_enough(const GcodePoint& told, const GcodeTrace& line) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i)
+    if (!told[i] && differ_at(i, line.before, line.after)) return false;
+  return true;
 }
 
 // Klipper's own commands that move nothing and leave the modes and the origin as they are, after
@@ -195,6 +206,7 @@ bool GcodePlace::lose() {
 
 GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {
   if (differ(line.before, line.after)) {
+    if (!tells_enough(told, line)) return GcodeFate::kUnknown;
     if (agree(told, line.after)) return GcodeFate::kTaken;
     return agree(told, line.before) ? GcodeFate::kMissed : GcodeFate::kUnknown;
   }

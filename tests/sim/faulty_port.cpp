@@ -44,8 +44,10 @@ void FaultyPort::step() {
   if (unplugged_ || written_ >= end_after)
     throw Error(Fault::kIo, "The channel has ended", "Plug it in.");
   deliver();
-  if (std::string output = firmware_.take_output(); !output.empty() && !lose_answers)
-    pass(std::move(output), to_host_);
+  std::string output = firmware_.take_output();
+  if (lose_answers) return;
+  if (on_answer) on_answer(output);
+  if (!output.empty()) pass(std::move(output), to_host_);
 }
 
 void FaultyPort::deliver() {

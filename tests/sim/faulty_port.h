@@ -47,6 +47,8 @@ class FaultyPort : public Port {
   std::function<void()> on_mishap;
   // May change what passes to the printer, or clear it.
   std::function<void(std::string& bytes)> on_send;
+  // May change what the printer says, or clear it.
+  std::function<void(std::string& bytes)> on_answer;
   // While true, what the firmware says is lost.
   bool lose_answers = false;
   // The channel ends once this many chunks were written.

@@ -90,6 +90,10 @@ TEST(Place, TellsALinesFate) {
   EXPECT_EQ(fate_of(moved, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kTaken);
   EXPECT_EQ(fate_of(moved, {0.0, 0.0, 0.0, 0.0}, true), GcodeFate::kMissed);
   EXPECT_EQ(fate_of(moved, {10.0, 0.0, 0.0, 5.0}, true), GcodeFate::kUnknown);
+  EXPECT_EQ(fate_of(moved, {std::nullopt, 0.0, 0.0, 0.0}, true), GcodeFate::kUnknown);
+  const GcodeTrace extrudes = place.follow("G1 E2");
+  EXPECT_EQ(fate_of(extrudes, {10.0, 0.0, 0.0}, true), GcodeFate::kUnknown) << "it was cut short";
+  place.follow("G92 E0");
   const GcodeTrace heats = place.follow("M104 S200");
   EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, true), GcodeFate::kTaken);
   EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kRepeatable);

@@ -126,6 +126,34 @@ TEST(Uncounted, AWindowAccusesNobody) {
   EXPECT_GT(seen.sent.find(" M114*"), seen.sent.find(" M400*"));
 }
 
+// Of the first answer to M114 only "X:… Y:… Z:…" arrives: whether a retraction was lost or taken it
+// does not tell, the next answer does.
+TEST(Uncounted, AReportThatWasCutShortProvesNothing) {
+  for (const bool loses_line : {false, true}) {
+    std::vector<std::string> program = moves("M83", 60);
+    program.insert(program.begin() + 30, "G1 E-.8");
+    Marlin firmware(Pace{1, true}, klipper());
+    FaultyPort port(firmware);
+    bool lost = false;
+    int cut = 0;
+    port.on_send = [&](std::string& bytes) {
+      const bool hit = command_of(bytes) == program[30] && !std::exchange(lost, true);
+      port.lose_answers = hit && !loses_line;
+      if (hit && loses_line) bytes.clear();
+    };
+    port.on_answer = [&](std::string& bytes) {
+      const std::size_t at = bytes.find(" E:");
+      if (at != std::string::npos && cut == 0 && ++cut == 1)
+        bytes.erase(at, bytes.find('\n', at) - at);
+    };
+    PrintControl control;
+    const auto failure = print(port, true, text(program), control);
+    EXPECT_FALSE(failure) << failure->what();
+    EXPECT_EQ(cut, 1);
+    EXPECT_EQ(only(port.executed(), program), program) << loses_line;
+  }
+}
+
 // A polled M105 is answered by any printer.
 TEST(Uncounted, APollIsNoProbe) {
   const std::vector<std::string> program = moves("M83", 60);
