@@ -38,9 +38,9 @@ bool differ(const GcodePoint& a, const GcodePoint& b) {
 }
 
 // Of every axis that the line moves: what was cut short on its way proves nothing.
-bool tells_enough(const GcodePoint& told, const GcodeTrace& line) {
+bool tells_enough(const GcodePoint& told, const GcodePoint& before, const GcodePoint& after) {
   for (std::size_t i = 0; i < kAxes.size(); ++i)
-    if (!told[i] && differ_at(i, line.before, line.after)) return false;
+    if (!told[i] && differ_at(i, before, after)) return false;
   return true;
 }
 
@@ -95,6 +95,7 @@ GcodeTrace GcodePlace::follow(std::string_view command) {
   const GcodeLine line(command, GcodeRules::kMarlin);
   GcodeTrace trace;
   trace.before = at_;
+  trace.still_before = still();
   trace.repeatable = true;
   if (is_macro(command) && !line.is_empty())
     trace.repeatable = is_klipper_setting(command) || lose();
@@ -106,14 +107,27 @@ GcodeTrace GcodePlace::follow(std::string_view command) {
     at_ = {};
   else if (!line.is_empty())
     trace.repeatable = lose();
+  if (!at_[kE]) still_e_.reset();
   trace.after = at_;
+  trace.still_after = still();
   trace.is_unreadable = is_move(line) && !can_read(line);
   return trace;
 }
 
+GcodePoint GcodePlace::still() const {
+  GcodePoint point = at_;
+  if (counts_relative_e_ != true) point[kE] = still_e_;
+  return point;
+}
+
 void GcodePlace::learn(const GcodePoint& told) {
+  if (!at_[kE]) still_e_ = told[kE];
   for (std::size_t i = 0; i < kAxes.size(); ++i)
     if (!at_[i]) at_[i] = told[i];
+  if (counts_relative_e_ || !differ_at(kE, at_, still())) return;
+  if (differ_at(kE, told, still()) != differ_at(kE, told, at_))
+    counts_relative_e_ = differ_at(kE, told, still());
+  if (counts_relative_e_ == false) at_[kE] = still_e_;
 }
 
 bool GcodePlace::follow_g(const GcodeLine& line) {
@@ -145,6 +159,7 @@ bool GcodePlace::follow_g(const GcodeLine& line) {
         at_ = {};  // all of them, or in some firmwares none
       for (std::size_t i = 0; i < kAxes.size(); ++i)
         if (line.has(kAxes[i])) at_[i] = inches_ == false ? line.value(kAxes[i]) : std::nullopt;
+      if (line.has('E')) still_e_ = at_[kE];
       return true;
     default:
       return leave(line);
@@ -176,8 +191,11 @@ bool GcodePlace::move(const GcodeLine& line) {
     repeatable = repeatable && relative == false;
     if (!to || inches_ != false || !relative || (*relative && !at_[i]))
       at_[i].reset();
-    else
-      at_[i] = *relative ? *at_[i] + *to : *to;
+    else if (!*relative)
+      at_[i] = *to;
+    else if (i != kE || counts_relative_e_ != false)
+      *at_[i] += *to;
+    if (i == kE && relative == false) still_e_ = at_[kE];
   }
   return repeatable;
 }
@@ -204,15 +222,31 @@ bool GcodePlace::lose() {
   return false;
 }
 
-GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {
-  if (differ(line.before, line.after)) {
-    if (!tells_enough(told, line)) return GcodeFate::kUnknown;
-    if (agree(told, line.after)) return GcodeFate::kTaken;
-    return agree(told, line.before) ? GcodeFate::kMissed : GcodeFate::kUnknown;
+namespace {
+
+// Nothing: neither here nor there.
+std::optional<GcodeFate> fate_between(const GcodePoint& before, const GcodePoint& after,
+                                      const GcodeTrace& line, const GcodePoint& told,
+                                      bool answered) {
+  if (differ(before, after)) {
+    if (!tells_enough(told, before, after)) return GcodeFate::kUnknown;
+    if (agree(told, after)) return GcodeFate::kTaken;
+    return agree(told, before) ? std::optional(GcodeFate::kMissed) : std::nullopt;
   }
-  if (!agree(told, where_known(line.after, line.before))) return GcodeFate::kUnknown;
+  if (!agree(told, where_known(after, before))) return std::nullopt;
   if (answered && !line.is_unreadable) return GcodeFate::kTaken;
   return line.repeatable ? GcodeFate::kRepeatable : GcodeFate::kUnknown;
+}
+
+}  // namespace
+
+// Whether the printer counts E in relative mode is perhaps not known: then both must lead to one
+// and the same fate, or what is told must fit one of them only.
+GcodeFate fate_of(const GcodeTrace& line, const GcodePoint& told, bool answered) {
+  const auto counted = fate_between(line.before, line.after, line, told, answered);
+  const auto still = fate_between(line.still_before, line.still_after, line, told, answered);
+  if (counted && still && *counted != *still) return GcodeFate::kUnknown;
+  return counted.value_or(still.value_or(GcodeFate::kUnknown));
 }
 
 }  // namespace packmerger

@@ -19,6 +19,10 @@ GcodePoint read_gcode_point(std::string_view report);
 struct GcodeTrace {
   GcodePoint before;
   GcodePoint after;
+  // The same of a printer that counts E in absolute mode alone (RepRapFirmware); where it is known
+  // whether it does, equal to those above.
+  GcodePoint still_before;
+  GcodePoint still_after;
   bool repeatable = false;
   bool is_unreadable = false;  // a move, relative or not, mm or inches: no place tells what it did
 };
@@ -27,8 +31,12 @@ class GcodePlace {
  public:
   GcodeTrace follow(std::string_view command);
   // Somebody may have moved the head by hand.
-  void forget() { at_ = {}; }
-  // Where the head is behind the last line, of the axes that were not known.
+  void forget() {
+    at_ = {};
+    still_e_.reset();
+  }
+  // Where the head is behind the last line, of the axes that were not known, and whether E is
+  // counted in relative mode.
   void learn(const GcodePoint& told);
 
  private:
@@ -37,10 +45,14 @@ class GcodePlace {
   bool follow_m(const GcodeLine& line);
   bool move(const GcodeLine& line);
   bool leave(const GcodeLine& line);
+  // at_, where E counts in absolute mode alone.
+  GcodePoint still() const;
   bool can_read(const GcodeLine& line) const;
   bool lose();  // a line that may have done anything
 
   GcodePoint at_;
+  std::optional<double> still_e_;  // where relative moves of E are not counted; known as at_'s is
+  std::optional<bool> counts_relative_e_;
   // Empty: not known, as behind a macro.
   std::optional<bool> relative_ = false;
   // G90 and G91 are for E too in some firmwares and not in others; empty where that decides.

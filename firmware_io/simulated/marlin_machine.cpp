@@ -105,7 +105,7 @@ bool Marlin::execute_move(const std::string& command, double now_s) {
       const double target = relative ? position_[i] + *to : *to;
       (i < 3 ? squared_mm : extruded_mm) +=
           i < 3 ? std::pow(target - position_[i], 2) : std::abs(target - position_[i]);
-      position_[i] = target;
+      if (i < 3 || !relative || traits_.counts_relative_e) position_[i] = target;
     }
     if (!moves) return true;
     if (const auto feed = value(command, 'F'); feed && *feed > 0) feed_mm_s_ = *feed / 60;

@@ -34,6 +34,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"counts_lines", &T::counts_lines},
                                  {"checks_sums", &T::checks_sums},
                                  {"drops_garbled", &T::drops_garbled},
+                                 {"counts_relative_e", &T::counts_relative_e},
                                  {"macros", &T::macros},
                                  {"comment_blank", &T::comment_blank}};
   return names;

@@ -36,6 +36,8 @@ struct MarlinTraits {
   bool checks_sums = false;    // where it counts no lines: it asks for one whose sum is wrong, by
                                // that line's own number, as old RepRapFirmware does
   bool drops_garbled = false;  // such a line it drops in silence, as RepRapFirmware 3 does
+  bool counts_relative_e =
+      true;                    // in M114; else E stays in relative mode, as RepRapFirmware's does
   bool macros = false;         // a command that begins with a word takes eight seconds
   bool comment_blank = false;  // "// action:", "// Unknown command:", as Klipper writes them
   // What it does once, with the line that it executes as the n-th since it booted; 0: never.

@@ -94,6 +94,28 @@ TEST(Place, TellsALinesFate) {
   const GcodeTrace extrudes = place.follow("G1 E2");
   EXPECT_EQ(fate_of(extrudes, {10.0, 0.0, 0.0}, true), GcodeFate::kUnknown) << "it was cut short";
   place.follow("G92 E0");
+  place.follow("M83");
+  const GcodePoint retracted = {10.0, 0.0, 0.0, -1.0};
+  const GcodePoint uncounted = {10.0, 0.0, 0.0, 0.0};
+  const GcodeTrace retracts = place.follow("G1 E-1");
+  EXPECT_EQ(fate_of(retracts, retracted, false), GcodeFate::kTaken);
+  EXPECT_EQ(fate_of(retracts, uncounted, true), GcodeFate::kUnknown)
+      << "it got lost, or E is not counted in relative mode";
+  const GcodeTrace both = place.follow("G1 X20 E1");
+  EXPECT_EQ(fate_of(both, {20.0, 0.0, 0.0, 0.0}, false), GcodeFate::kTaken) << "counted or not";
+  EXPECT_EQ(fate_of(both, uncounted, false), GcodeFate::kMissed);
+  EXPECT_EQ(fate_of(both, {20.0, 0.0, 0.0, 1.0}, false), GcodeFate::kUnknown) << "doubled";
+  place.follow("G1 X10 E1");
+  GcodePlace counting = place;
+  place.learn(uncounted);
+  counting.learn({10.0, 0.0, 0.0, 1.0});
+  EXPECT_EQ(place.follow("G1 E1").after, uncounted);
+  EXPECT_EQ(fate_of(counting.follow("G1 E-1"), uncounted, true), GcodeFate::kTaken);
+  const GcodePoint before = {10.0, 0.0, 0.0, 0.0};
+  EXPECT_EQ(fate_of(counting.follow("G1 E-1"), before, true), GcodeFate::kMissed);
+  place.follow("M82");
+  place.follow("G92 E0");
+  place.follow("G1 X10");
   const GcodeTrace heats = place.follow("M104 S200");
   EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, true), GcodeFate::kTaken);
   EXPECT_EQ(fate_of(heats, {10.0, 0.0, 0.0, 0.0}, false), GcodeFate::kRepeatable);

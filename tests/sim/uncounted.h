@@ -26,6 +26,15 @@ inline std::string text(const std::vector<std::string>& lines) {
   return text;
 }
 
+// RepRapFirmware, whose new versions drop in silence what came garbled.
+inline simulated::MarlinTraits rep_rap_firmware(bool drops) {
+  simulated::MarlinTraits traits = simulated::klipper();
+  traits.checks_sums = true;
+  traits.drops_garbled = drops;
+  traits.counts_relative_e = false;
+  return traits;
+}
+
 struct Outcome {
   std::optional<Error> failure;
   std::vector<std::string> executed;  // of the program
