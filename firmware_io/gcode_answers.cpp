@@ -174,10 +174,14 @@ void GcodeStream::watch_silence() {
 void GcodeStream::recover() {
   was_silent_ = true;
   if (attempt_at_s_ > given_at_s_ && alive_at_s_ >= attempt_at_s_) patience_factor_ *= 2;
-  channel_.send("");
-  tally_.count_sent(false);
-  ask_for_proof();
+  ask_behind_empty_line();
   attempt_at_s_ = channel_.now_s();
+}
+
+void GcodeStream::ask_behind_empty_line() {
+  channel_.send("");
+  tally_.count_empty_line();
+  ask_for_proof();
 }
 
 // The answer to M105 comes behind all others: what was owed before it and did not come got lost,

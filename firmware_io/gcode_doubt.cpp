@@ -26,14 +26,14 @@ bool GcodeStream::is_in_doubt() const {
 std::optional<std::size_t> GcodeStream::settle_doubt() {
   if (was_silent_) hear_what_is_owed();
   if (resend_) return hear_answers();
-  const bool answered = tally_.proves_line(temperatures_in_ok_);
-  if (answered && !in_doubt_ && tally_.is_complete(temperatures_in_ok_)) {
-    was_silent_ = taken_for_granted_ = false;
-    complaint_.clear();
-    return std::nullopt;
-  }
+  if (is_proven_by_oks()) return std::nullopt;
   std::optional<std::size_t> again = learn_line_count();
   const bool counts = line_count_ == LineCount::kKept;
+  if (!again && line_count_ == LineCount::kIgnored && was_silent_ && !in_doubt_) {
+    again = learn_about_empty_lines();
+    if (!again && is_proven_by_oks()) return std::nullopt;
+  }
+  const bool answered = tally_.proves_line(temperatures_in_ok_, answers_empty_);
   // Only one that counts none answers an empty line, so that the ok was perhaps not the line's.
   if (counts || answered) complaint_.clear();
   if (!again && !complaint_.empty() && !cancelling_) fail_unanswered();
@@ -42,6 +42,33 @@ std::optional<std::size_t> GcodeStream::settle_doubt() {
     again = prove_by_position(answered);
   in_doubt_ = was_silent_ = false;
   return again;
+}
+
+bool GcodeStream::is_proven_by_oks() {
+  if (in_doubt_ || !tally_.is_complete(temperatures_in_ok_) ||
+      !tally_.proves_line(temperatures_in_ok_, answers_empty_))
+    return false;
+  was_silent_ = taken_for_granted_ = false;
+  complaint_.clear();
+  return true;
+}
+
+// Klipper says ok to an empty line, RepRapFirmware says nothing: only where that is known is it
+// plain whether the one ok behind a silence was the line's or the empty line's. That it says
+// nothing is believed the second time, since an answer may get lost.
+std::optional<std::size_t> GcodeStream::learn_about_empty_lines() {
+  constexpr int kSilences = 2;
+  int silences = 0;
+  while (!empty_is_known_ && temperatures_in_ok_ && !cancelling_) {
+    ask_behind_empty_line();
+    if (const auto again = hear_answers()) return again;
+    const std::optional<bool> told = tally_.tells_of_empty_line();
+    if (!told) return std::nullopt;
+    if (!*told && ++silences < kSilences) continue;
+    answers_empty_ = *told;
+    empty_is_known_ = true;
+  }
+  return std::nullopt;
 }
 
 // A printer that was only slow has yet to answer whatever it was asked meanwhile; one that says

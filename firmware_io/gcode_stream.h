@@ -94,6 +94,7 @@ class GcodeStream {
   void handle_busy(const GcodeReply& reply);
   void watch_silence();
   void recover();
+  void ask_behind_empty_line();
   void ask_for_proof();
   bool wants_proof() const;
   void ask_temperatures();
@@ -101,6 +102,8 @@ class GcodeStream {
   // gcode_doubt.cpp: printers that count no lines
   bool is_in_doubt() const;
   std::optional<std::size_t> settle_doubt();
+  bool is_proven_by_oks();
+  std::optional<std::size_t> learn_about_empty_lines();
   void hear_what_is_owed();
   template <typename Ask, typename IsSettled>
   std::optional<std::size_t> ask_until(const IsSettled& is_settled, const Ask& ask_once);
@@ -208,7 +211,9 @@ class GcodeStream {
   double busy_interval_s_ = 0;       // the longest
   LineCount line_count_ = LineCount::kUnknown;
   bool asked_whether_it_counts_ = false;
-  std::size_t settled_ = 0;  // the line up to which nothing is in doubt any more
+  bool answers_empty_ = true;    // an empty line, as Klipper does; so it is taken for
+  bool empty_is_known_ = false;  // until it was asked
+  std::size_t settled_ = 0;      // the line up to which nothing is in doubt any more
   GcodePlace place_;
   GcodeTrace trace_;  // of the line given last
   int missed_ = 0;    // lines that got lost on their way to a printer that counts none

@@ -24,12 +24,13 @@ std::vector<std::string> slow_program() {
 
 TEST(Macros, ASlowCommandIsNoLostOne) {
   const std::vector<std::string> program = slow_program();
-  for (const std::size_t window : {0U, 96U}) {
-    const Outcome seen = outcome(program, {}, "", window, Pace{1, false});
-    EXPECT_FALSE(seen.failure) << seen.failure->what();
-    EXPECT_EQ(seen.executed, program);
-    EXPECT_THAT(seen.sent, ContainsRegex("\n\nN[0-9]+ M105[*]")) << "it was silent for long";
-  }
+  for (const auto& traits : {klipper(), rep_rap_firmware(false), rep_rap_firmware(true)})
+    for (const std::size_t window : {0U, 96U}) {
+      const Outcome seen = outcome(program, {}, "", window, Pace{1, false}, traits);
+      EXPECT_FALSE(seen.failure) << seen.failure->what();
+      EXPECT_EQ(seen.executed, program);
+      EXPECT_THAT(seen.sent, ContainsRegex("\n\nN[0-9]+ M105[*]")) << "it was silent for long";
+    }
 }
 
 // The oks of the empty lines behind it come all the same.

@@ -15,15 +15,19 @@ namespace {
 GcodeTally asked_behind_a_line() {
   GcodeTally tally;
   tally.begin(false);
-  for (const bool asks_temperatures : {true, false, true}) tally.count_sent(asks_temperatures);
+  tally.count_sent(true);
+  tally.count_empty_line();
+  tally.count_sent(true);
   return tally;
 }
 
-bool is_proven_by(std::string_view oks) {
+GcodeTally answered_with(std::string_view oks) {
   GcodeTally tally = asked_behind_a_line();
   for (const char ok : oks) tally.count_ok(ok == 'T');
-  return tally.proves_line(true);
+  return tally;
 }
+
+bool is_proven_by(std::string_view oks) { return answered_with(oks).proves_line(true, true); }
 
 // Of a line, M105, an empty line and M105; "-": ok, "T": ok with temperatures.
 TEST(Tally, TellsTheLinesOwnOk) {
@@ -32,7 +36,21 @@ TEST(Tally, TellsTheLinesOwnOk) {
   EXPECT_FALSE(is_proven_by("T-T")) << "the line got lost";
   EXPECT_FALSE(is_proven_by("-T")) << "the first or the last M105's";
   EXPECT_FALSE(is_proven_by(""));
-  EXPECT_FALSE(GcodeTally(asked_behind_a_line()).proves_line(false));
+  EXPECT_FALSE(asked_behind_a_line().proves_line(false, true));
+}
+
+TEST(Tally, TellsWhetherAnEmptyLineIsAnswered) {
+  EXPECT_EQ(answered_with("-T-T").tells_of_empty_line(), true);
+  EXPECT_EQ(answered_with("-TT").tells_of_empty_line(), false);
+  EXPECT_EQ(answered_with("-T").tells_of_empty_line(), std::nullopt) << "one has no answer";
+  GcodeTally slow;  // an empty line and M105 behind it
+  slow.begin(false);
+  slow.count_empty_line();
+  slow.count_sent(true);
+  for (const bool has_temperature : {false, true}) slow.count_ok(has_temperature);
+  EXPECT_EQ(slow.tells_of_empty_line(), std::nullopt);
+  EXPECT_FALSE(slow.proves_line(true, true)) << "the one ok may be the empty line's";
+  EXPECT_TRUE(slow.proves_line(true, false));
 }
 
 // PRINT_START heats as its user wrote it, and says nothing but the temperatures.

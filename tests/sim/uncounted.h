@@ -46,8 +46,9 @@ using Harm = std::function<void(const std::string& command, std::string& bytes)>
 
 inline Outcome outcome(const std::vector<std::string>& program, const Harm& harm,
                        const std::string& lost_answer = "", std::size_t window_bytes = 0,
-                       simulated::Pace pace = {1, true}) {
-  simulated::Marlin firmware(pace, simulated::klipper());
+                       simulated::Pace pace = {1, true},
+                       const simulated::MarlinTraits& traits = simulated::klipper()) {
+  simulated::Marlin firmware(pace, traits);
   FaultyPort port(firmware);
   port.on_send = [&](std::string& bytes) {
     const std::string command = command_of(bytes);
