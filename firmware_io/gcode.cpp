@@ -45,9 +45,9 @@ std::size_t GcodeCommands::count() const {
 }
 
 void check_gcode_commands(const GcodeCommands& commands) {
-  std::size_t number = 0;
+  bool is_empty = true;
   for (const GcodeCommand& command : commands) {
-    ++number;
+    is_empty = false;
     for (char c : command.text)
       if ((c < ' ' || c > '~') && c != '\t')
         refuse(command, "holds a byte that is not plain ASCII",
@@ -59,12 +59,12 @@ void check_gcode_commands(const GcodeCommands& commands) {
     if (has(command.text, "M110"))
       refuse(command, "holds M110, which would change the printer's line count",
              "Remove it: PackMerger numbers the lines itself.");
-    if (numbered_gcode(number, command.text).size() - 1 > kMaxGcodeLine)
+    if (command.text.size() > kMaxGcodeCommand)
       refuse(command, "is too long for the printer's serial line",
-             "Shorten it: with number and checksum a line may have " +
-                 std::to_string(kMaxGcodeLine) + " characters.");
+             "Shorten it to " + std::to_string(kMaxGcodeCommand) +
+                 " characters: number and checksum are added to it.");
   }
-  if (number == 0)
+  if (is_empty)
     throw Error(Fault::kBadInput, "The program has no command", "Prepare the model again.");
 }
 

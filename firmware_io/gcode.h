@@ -113,5 +113,9 @@ GcodeReply read_gcode_reply(std::string_view line);
 
 // Longest line that Marlin takes, numbering and checksum included, the line ending not.
 inline constexpr std::size_t kMaxGcodeLine = 95;
+// Of these a command may have so many, whatever its number: what is asked between the lines of a
+// program takes numbers too, in a pause without end.
+inline constexpr std::size_t kMaxGcodeCommand =
+    kMaxGcodeLine - std::string_view("N99999999 *255").size();
 
 }  // namespace packmerger

@@ -9,11 +9,11 @@
 
 namespace packmerger {
 
-// Refuses a program that the wire cannot carry: a command that with its line number and checksum
-// is longer than 95 bytes (Marlin drops the rest in silence), bytes that are not printable ASCII,
-// lines that are numbered already, commands that change the line count (M110), nothing to print.
-// Comments and empty lines are not sent and may hold anything. Throws Error{kBadInput} naming the
-// line.
+// Refuses a program that the wire cannot carry: a command that with a number of eight digits and a
+// checksum is longer than 95 bytes (Marlin drops the rest in silence), bytes that are not printable
+// ASCII, lines that are numbered already, commands that change the line count (M110), nothing to
+// print. Comments and empty lines are not sent and may hold anything. Throws Error{kBadInput}
+// naming the line.
 void check_gcode(std::string_view program);
 
 // Prints the program and returns when the printer has executed all of it (the last moves too).
