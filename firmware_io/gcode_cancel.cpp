@@ -44,8 +44,9 @@ void GcodeStream::begin_cancel() {
   reporter_.state(PrintState::kCancelling);
   send("M410");
   send("M108");
-  const std::size_t first =
-      std::min(highest_ > kSlack ? highest_ - kSlack : 1, commands_.size() + 1);
+  // In a pause the numbers of its questions run away from the line that may still be lacking.
+  const std::size_t from = std::min(highest_, open_);
+  const std::size_t first = std::min(from > kSlack ? from - kSlack : 1, commands_.size() + 1);
   commands_.shorten(highest_);
   for (std::size_t i = first; i <= commands_.size(); ++i) commands_.replace(i - 1, "M105");
   end_ = 0;

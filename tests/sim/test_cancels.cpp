@@ -74,6 +74,27 @@ TEST(Cancel, EndsWhateverThePrinterAsksNext) {
   EXPECT_THAT(shown, HasSubstr("Paused (Continue)"));
 }
 
+// A line got lost whose ok came all the same, and the printer asks for it for as long as the pause
+// lasts, while its questions take one number after the other.
+TEST(Cancel, InALongPauseExecutesNoOldLine) {
+  Marlin firmware(Pace{1, false});
+  FaultyPort port(firmware);
+  PrintControl control;
+  std::string program;
+  for (int i = 1; i <= 20; ++i) program += "G1 X" + std::to_string(i) + "\n";
+  port.on_send = [&](std::string& bytes) {
+    if (bytes.find("G1 X9*") == std::string::npos) return;
+    bytes = "G4 P0\n";
+    firmware.tell_host("paused");
+  };
+  const auto failure = act_at(port, program, 2000, control, [&] { control.cancel(); });
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->fault(), Fault::kInterrupted) << failure->what();
+  EXPECT_EQ(count(port.executed(), "G1 X8"), 1u);
+  EXPECT_EQ(count(port.executed(), "G1 X9"), 0u);
+  EXPECT_GE(count(port.executed(), "M104 S0"), 1u);
+}
+
 // While the last moves are waited for, with a line that is none of the program's.
 TEST(Cancel, BehindTheProgramsLastLine) {
   Marlin firmware(Pace{1, false});
