@@ -79,6 +79,7 @@ void GcodeStream::hear_what_is_owed() {
     const auto reply = channel_.receive(kSettle_s);
     if (reply && reply->kind == GcodeReplyKind::kIdle) return;
     if (reply) handle(*reply);
+    obey_requests();
   }
 }
 

@@ -82,6 +82,7 @@ std::size_t GcodeStream::exchange(std::size_t number) {
   if (is_new) number = highest_ + 1;  // questions took the numbers up to there
   if (paused_ && !cancelling_ && may_pause_before(number)) return number;
   const bool gives = !resend_;
+  if (gives && number > commands_.size()) return number;  // cancelled meanwhile
   if (gives) give(number);
   if (const auto again = hear_answers()) return *again;
   if (is_in_doubt())
@@ -125,6 +126,7 @@ void GcodeStream::hear_what_came(double quiet_s) {
     const auto reply = channel_.receive(quiet_s);
     if (!reply) return;
     handle(*reply);
+    obey_requests();
   }
 }
 

@@ -174,6 +174,45 @@ TEST(Uncounted, AReportThatWasCutShortProvesNothing) {
   }
 }
 
+// A printer that never falls silent, while it is found out what became of a line: it is obeyed to a
+// cancel at once whenever that comes.
+TEST(Uncounted, ADoubtHoldsBackNoCancel) {
+  const std::vector<std::string> program = moves("M83", 60);
+  for (double wait_s = 0; wait_s < 12; wait_s += 0.5) {
+    Marlin firmware(Pace{1, true}, klipper());
+    FaultyPort port(firmware);
+    PrintControl control;
+    double doubted_at_s = simulated::kNever;
+    double chattered_at_s = 0;
+    double cancelled_at_s = simulated::kNever;
+    double obeyed_at_s = simulated::kNever;
+    port.on_send = [&](std::string& bytes) {
+      const std::string command = command_of(bytes.substr(0, bytes.find('\n')));
+      port.lose_answers = command == program[30];
+      if (port.lose_answers) doubted_at_s = std::min(doubted_at_s, port.now_s());
+      if (command == "M410") obeyed_at_s = port.now_s();
+    };
+    port.on_answer = [&](std::string& bytes) {
+      if (port.now_s() < doubted_at_s || port.now_s() < chattered_at_s + 0.03) return;
+      chattered_at_s = port.now_s();
+      bytes += "echo:chatter\n";
+    };
+    port.on_step = [&](std::size_t) {
+      if (port.now_s() < doubted_at_s + wait_s || cancelled_at_s < simulated::kNever) return;
+      cancelled_at_s = port.now_s();
+      control.cancel();
+    };
+    StreamOptions options = scenario_options();
+    options.timeout_s = 5;
+    options.safe_gcode.clear();
+    const auto failure = print(port, true, text(program), control, {}, options);
+    if (cancelled_at_s == simulated::kNever) break;
+    ASSERT_TRUE(failure) << wait_s;
+    EXPECT_EQ(failure->fault(), Fault::kInterrupted) << failure->what();
+    EXPECT_LT(obeyed_at_s, cancelled_at_s + 0.5) << wait_s;
+  }
+}
+
 // A polled M105 is answered by any printer.
 TEST(Uncounted, APollIsNoProbe) {
   const std::vector<std::string> program = moves("M83", 60);
