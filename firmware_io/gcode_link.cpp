@@ -40,23 +40,57 @@ std::string what_turns_heaters_off(const std::string& text) {
   return lines;
 }
 
-// Behind a print, and after a failure the line count is unknown, so these go without numbers; no
-// answer is insisted on. A printer that says it has stopped may still obey; one that is dead is
-// not harmed. Returns the first "!!" of the answers: Klipper names the cause of its shutdown only
-// to the commands that it refuses.
-std::string send_text(GcodeChannel& channel, const std::string& text) {
+enum class Heard { kAnswer, kRequest, kReset };
+
+// Waits a second for the answer to a line. refusal: the first "!!" that came.
+Heard say(GcodeChannel& channel, std::string_view line, std::string& refusal) {
   constexpr double kPatience_s = 1;
+  Heard heard = Heard::kAnswer;
+  channel.send(line);
+  const double end = channel.now_s() + kPatience_s;
+  while (channel.now_s() < end) {
+    const auto reply = channel.receive(end - channel.now_s());
+    if (!reply || reply->kind == GcodeReplyKind::kOk) break;
+    if (reply->kind == GcodeReplyKind::kStart) return Heard::kReset;
+    if (reply->kind == GcodeReplyKind::kResend) heard = Heard::kRequest;
+    if (reply->text.starts_with("!!") && refusal.empty()) refusal = reply->text;
+  }
+  return heard;
+}
+
+std::string numbered_line(std::size_t number, std::string_view command) {
+  std::string line = numbered_gcode(number, command);
+  line.pop_back();
+  return line;
+}
+
+// For a printer that takes no line without a number any more.
+void send_numbered(GcodeChannel& channel, const std::string& text, std::string& refusal) {
+  constexpr int kTries = 3;
+  std::size_t number = 0;
+  say(channel, numbered_line(number, "M110 N0"), refusal);
+  for (const GcodeCommand& command : gcode_commands(text)) {
+    const std::string line = numbered_line(++number, command.text);
+    for (int i = 0; i < kTries; ++i) {
+      const Heard heard = say(channel, line, refusal);
+      if (heard == Heard::kReset) return;
+      if (heard == Heard::kAnswer) break;
+    }
+  }
+}
+
+// Behind a print, and after a failure the line count is unknown, so these go without numbers; no
+// answer is insisted on. Repetier's firmware may ask for a numbered line instead: it gets all of
+// them so, behind a count of its own. A printer that says it has stopped may still obey; one that
+// is dead is not harmed. Returns the first "!!" of the answers: Klipper names the cause of its
+// shutdown only to the commands that it refuses.
+std::string send_text(GcodeChannel& channel, const std::string& text) {
   std::string refusal;
   try {
     for (const GcodeCommand& command : gcode_commands(text)) {
-      channel.send(command.text);
-      const double end = channel.now_s() + kPatience_s;
-      while (channel.now_s() < end) {
-        const auto reply = channel.receive(end - channel.now_s());
-        if (!reply || reply->kind == GcodeReplyKind::kOk) break;
-        if (reply->kind == GcodeReplyKind::kStart) return refusal;
-        if (reply->text.starts_with("!!") && refusal.empty()) refusal = reply->text;
-      }
+      const Heard heard = say(channel, command.text, refusal);
+      if (heard == Heard::kRequest) send_numbered(channel, text, refusal);
+      if (heard != Heard::kAnswer) break;
     }
   } catch (const Error&) {
     // The port is gone; the failure that led here is what the user must read.

@@ -79,6 +79,8 @@ void Marlin::take_line(std::string line, double now_s) {
   if (line.empty() && (traits_.counts_lines || traits_.checks_sums)) return;  // gets no ok
   const bool numbered = traits_.counts_lines && line[0] == 'N';
   if (numbered && !take_number(line)) return;
+  if (!numbered && traits_.refuses_raw && last_number_ > 0 && !is(line, "M112"))
+    return refuse_line("Missing checksum");
   const bool checks_sum = !traits_.counts_lines && traits_.checks_sums && line[0] == 'N';
   if (checks_sum && !has_right_sum(line)) {
     if (!traits_.drops_garbled) ask_for(std::atol(line.c_str() + 1));

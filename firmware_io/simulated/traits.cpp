@@ -35,6 +35,7 @@ const Names<MarlinTraits>& names_of(const MarlinTraits&) {
                                  {"checks_sums", &T::checks_sums},
                                  {"drops_garbled", &T::drops_garbled},
                                  {"counts_relative_e", &T::counts_relative_e},
+                                 {"refuses_raw", &T::refuses_raw},
                                  {"macros", &T::macros},
                                  {"comment_blank", &T::comment_blank}};
   return names;

@@ -38,6 +38,7 @@ struct MarlinTraits {
   bool drops_garbled = false;  // such a line it drops in silence, as RepRapFirmware 3 does
   bool counts_relative_e =
       true;                    // in M114; else E stays in relative mode, as RepRapFirmware's does
+  bool refuses_raw = false;    // once a line was numbered, one that is not (but M112) is asked for
   bool macros = false;         // a command that begins with a word takes eight seconds
   bool comment_blank = false;  // "// action:", "// Unknown command:", as Klipper writes them
   // What it does once, with the line that it executes as the n-th since it booted; 0: never.

@@ -235,5 +235,22 @@ TEST(Marlin, AnEarlyResetIsNoticedEvenWhenItsFirstWordsAreLost) {
   EXPECT_EQ(count(executed, "M104 S199"), 1U) << "nothing is executed again";
 }
 
+// As Repetier's firmware: what is not numbered it asks for, whoever needs the heaters off.
+TEST(Marlin, ATextWithoutNumbersThatIsRefusedComesNumbered) {
+  simulated::MarlinTraits traits;
+  traits.refuses_raw = true;
+  traits.fatal_at = 20;
+  simulated::Marlin firmware(simulated::Pace{1, true}, traits);
+  FaultyPort port(firmware);
+  PrintControl control;
+  std::string program = "M104 S200\n";
+  for (int i = 1; i <= 40; ++i) program += "G1 X" + std::to_string(i) + "\n";
+  const auto failure = print(port, true, program, control);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->what(), ::testing::HasSubstr("fatal:"));
+  EXPECT_GE(count(port.executed(), "M104 S0"), 1u);
+  EXPECT_GE(count(port.executed(), "M140 S0"), 1u);
+}
+
 }  // namespace
 }  // namespace packmerger::test
