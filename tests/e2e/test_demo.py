@@ -53,11 +53,19 @@ class Demo(unittest.TestCase):
         self.assertRegex(demo.communicate(timeout=60)[0], r"first run .* builds everything \(about .* minutes")
         self.assertNotEqual(demo.returncode, 0, "there is nothing to run yet")
 
-    def test_what_the_program_is_for_is_shown_and_made(self):
+    def test_what_the_program_is_for_is_shown_made_and_served(self):
         self.with_programs()
-        demo = self.start()
-        told = demo.communicate(timeout=900)[0]
-        self.assertEqual(demo.returncode, 0, told[-3000:])
+        demo = self.start("web")
+        self.addCleanup(demo.stdout.close)
+        lines = []
+        for line in demo.stdout:
+            lines.append(line)
+            if "Ctrl-C ends it" in line:
+                break
+        told = "".join(lines)
+        self.the_page_is_reached(told)
+        os.killpg(demo.pid, signal.SIGINT)
+        self.assertEqual(demo.wait(timeout=60), 0, told[-3000:])
         self.assertNotIn("first run", told)
         bunny, arch = (json.loads((self.made(told, name, "picture").parent / "job.json").read_text()) for name in ("the bunny", "the arch"))
         ways = bunny["estimates"]
@@ -74,20 +82,16 @@ class Demo(unittest.TestCase):
         for name in re.findall(r"/\S*build/demo\S*?(?=[,\s]|$)", told):
             self.assertTrue(pathlib.Path(name).exists(), name)
 
+    def the_page_is_reached(self, told):
+        link = re.search(r"The page: (http://\S+)#look=\S+", told)
+        self.assertIsNotNone(link, told[-3000:])
+        self.assertIn(f":{self.port}/", link.group(1))
+        self.assertEqual(urllib.request.urlopen(link.group(1), timeout=60).status, 200)
+
     def made(self, told, model, what):
         """The file or folder that the last lines name."""
         block = told[told.rindex(f"  {model}"):]
         return pathlib.Path(re.search(rf"{what} +(\S+)", block).group(1))
-
-    def test_the_page_is_reached_by_the_link_that_is_printed(self):
-        self.with_programs()
-        demo = self.start("web")
-        self.addCleanup(demo.stdout.close)
-        link = next(match for line in demo.stdout if (match := re.search(r"The page: (http://\S+)#look=\S+", line)))
-        self.assertIn(f":{self.port}/", link.group(1))
-        self.assertEqual(urllib.request.urlopen(link.group(1), timeout=60).status, 200)
-        os.killpg(demo.pid, signal.SIGINT)
-        self.assertEqual(demo.wait(timeout=60), 0)
 
 
 if __name__ == "__main__":
