@@ -68,15 +68,18 @@ void check_gcode_commands(const GcodeCommands& commands) {
     throw Error(Fault::kBadInput, "The program has no command", "Prepare the model again.");
 }
 
-std::string numbered_gcode(std::size_t number, std::string_view command) {
+std::string numbered_line(std::size_t number, std::string_view command) {
   std::string line = "N" + std::to_string(number) + " ";
   line += command;
   std::uint8_t checksum = 0;
   for (char c : line) checksum = static_cast<std::uint8_t>(checksum ^ static_cast<std::uint8_t>(c));
   line += '*';
   line += std::to_string(checksum);
-  line += '\n';
   return line;
+}
+
+std::string numbered_gcode(std::size_t number, std::string_view command) {
+  return numbered_line(number, command) + '\n';
 }
 
 std::string_view gcode_word(std::string_view command) {

@@ -52,6 +52,8 @@ void check_gcode_commands(const GcodeCommands& commands);
 
 // "N1 G28*18\n": the checksum is the exclusive or of every byte before the asterisk.
 std::string numbered_gcode(std::size_t number, std::string_view command);
+// The same without its line ending, as GcodeChannel::send() takes it.
+std::string numbered_line(std::size_t number, std::string_view command);
 
 // The first word of a command: "G1" of "G1 X10", "M109" of "M109 S200".
 std::string_view gcode_word(std::string_view command);

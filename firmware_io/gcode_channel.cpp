@@ -132,8 +132,7 @@ Answer identify(GcodeChannel& channel, const StreamOptions& options, const Print
 
 void reset_line_count(GcodeChannel& channel, const StreamOptions& options,
                       const PrintControl& control) {
-  std::string line = numbered_gcode(0, "M110 N0");
-  line.pop_back();
+  const std::string line = numbered_line(0, "M110 N0");
   for (int i = 0; i < kTries; ++i) {
     if (ask(channel, line, options.timeout_s / kTries, control, [](const Answer& a) {
           return a.ok;

@@ -108,11 +108,9 @@ std::optional<std::size_t> GcodeStream::ask_until(const IsSettled& is_settled,
 std::optional<std::size_t> GcodeStream::learn_line_count() {
   return ask_until([&] { return line_count_ != LineCount::kUnknown; },
                    [&] {
-                     std::string line = numbered_gcode(last_ + kFarAhead, "M105");
-                     line.pop_back();
                      probes_ = true;
                      probed_at_s_ = channel_.now_s();
-                     send(line, true);
+                     send(numbered_line(last_ + kFarAhead, "M105"), true);
                    });
 }
 

@@ -58,12 +58,6 @@ Heard say(GcodeChannel& channel, std::string_view line, std::string& refusal) {
   return heard;
 }
 
-std::string numbered_line(std::size_t number, std::string_view command) {
-  std::string line = numbered_gcode(number, command);
-  line.pop_back();
-  return line;
-}
-
 // For a printer that takes no line without a number any more.
 void send_numbered(GcodeChannel& channel, const std::string& text, std::string& refusal) {
   constexpr int kTries = 3;

@@ -152,11 +152,10 @@ bool GcodeStream::may_give_another() const {
 }
 
 void GcodeStream::give(std::size_t number) {
-  std::string line = numbered_gcode(number, command(number));
+  const std::string line = numbered_line(number, command(number));
   const bool asks = is_question(number);
-  unanswered_.push_back(
-      {asks ? 0 : number, line.size(), gcode_word(command(number)) == "M105", asks ? number : 0});
-  line.pop_back();
+  unanswered_.push_back({asks ? 0 : number, line.size() + 1, gcode_word(command(number)) == "M105",
+                         asks ? number : 0});
   channel_.send(line);
   alive_at_s_ = attempt_at_s_ = given_at_s_ = busy_at_s_ = channel_.now_s();
   patience_factor_ = 1;
@@ -189,9 +188,7 @@ void GcodeStream::ask(const std::string& question) {
   } else if (is_question(last_ + 1) && command(last_ + 1) == question) {
     number = ++last_;
   }
-  std::string line = numbered_gcode(number, question);
-  line.pop_back();
-  send(line, question == "M105");
+  send(numbered_line(number, question), question == "M105");
   unanswered_.back().question = number;
 }
 

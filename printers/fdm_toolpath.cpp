@@ -13,31 +13,6 @@ constexpr double kSolidIslandMm2 = 70;  // smaller islands are filled solid (the
 constexpr double kAnchorMm = 3;         // by which solid fill grows into the sparse one
 constexpr double kInterfaceLayers = 2;
 
-// Area inside the shells of one island: an outline and the holes in it.
-struct Island {
-  const Contour* outline = nullptr;
-  double area_mm2 = 0;
-  double perimeter_mm = 0;
-};
-
-std::vector<Island> islands_of(const Layer& layer) {
-  std::vector<Island> islands;
-  for (const Contour& contour : layer.contours)
-    if (contour.area_mm2 > 0) islands.push_back({&contour, contour.area_mm2, contour.perimeter_mm});
-  for (const Contour& hole : layer.contours) {
-    if (hole.area_mm2 > 0) continue;
-    Island* around = nullptr;  // the smallest that can hold it
-    for (Island& island : islands)
-      if (island.outline->box.contains(hole.box) &&
-          (around == nullptr || island.outline->area_mm2 < around->outline->area_mm2))
-        around = &island;
-    if (around == nullptr) continue;  // only where contours cross: not worth more
-    around->area_mm2 += hole.area_mm2;
-    around->perimeter_mm += hole.perimeter_mm;
-  }
-  return islands;
-}
-
 }  // namespace
 
 Bead bead(const FdmSettings& settings, double layer_mm) {

@@ -33,8 +33,8 @@ constexpr LinearTerm kDepositionTime[] = {
      [](P p, T t) { return (t.model_mm3 + p.fdm.support_fill_fraction * t.held_mm3) / 1000; }},
     {"fdm.layer_s", [](P p) { return p.fdm.layer_s; }, [](P, T t) { return t.layers; }},
 };
-constexpr LinearTerm kPathTime[] = {kFdmStart, {nullptr, one, [](P, T t) { return t.path_s; }}};
-constexpr LinearTerm kFdmModel[] = {{nullptr, one, [](P, T t) { return t.model_mm3; }}};
+constexpr LinearTerm kPathTime[] = {kFdmStart, {"", one, [](P, T t) { return t.path_s; }}};
+constexpr LinearTerm kFdmModel[] = {{"", one, [](P, T t) { return t.model_mm3; }}};
 constexpr LinearTerm kFdmSupport[] = {
     {"fdm.support_fill_fraction", [](P p) { return p.fdm.support_fill_fraction; },
      [](P p, T t) { return t.held_mm3 / 1000 * p.material.support_density_g_cm3; }},

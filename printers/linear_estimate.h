@@ -4,13 +4,14 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "printers/print_terms.h"
 
 namespace packmerger {
 
 struct LinearTerm {
-  const char* key = nullptr;           // the profile's; nullptr where it is no constant's
+  std::string_view key;                // the profile's; empty where it is no constant's
   double (*constant)(const Profile&);  // in the form in which the sum is linear
   double (*amount)(const Profile&, const PrintTerms&);  // not negative
 };

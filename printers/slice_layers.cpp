@@ -97,6 +97,24 @@ void add_up(Layer& layer) {
 
 }  // namespace
 
+std::vector<Island> islands_of(const Layer& layer) {
+  std::vector<Island> islands;
+  for (const Contour& contour : layer.contours)
+    if (contour.area_mm2 > 0) islands.push_back({&contour, contour.area_mm2, contour.perimeter_mm});
+  for (const Contour& hole : layer.contours) {
+    if (hole.area_mm2 > 0) continue;
+    Island* around = nullptr;  // the smallest that can hold it
+    for (Island& island : islands)
+      if (island.outline->box.contains(hole.box) &&
+          (around == nullptr || island.outline->area_mm2 < around->outline->area_mm2))
+        around = &island;
+    if (around == nullptr) continue;  // only where contours cross: not worth more
+    around->area_mm2 += hole.area_mm2;
+    around->perimeter_mm += hole.perimeter_mm;
+  }
+  return islands;
+}
+
 Layer slice_at(const Mesh& part, double z_mm) {
   std::vector<int> met;
   for (const auto face : part.faces()) {

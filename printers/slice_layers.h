@@ -20,6 +20,14 @@ struct Layer {
   double perimeter_mm = 0;  // outlines and holes
 };
 
+// What is round one outline of a layer: it, less the holes in it.
+struct Island {
+  const Contour* outline = nullptr;
+  double area_mm2 = 0;
+  double perimeter_mm = 0;  // of the holes too
+};
+std::vector<Island> islands_of(const Layer& layer);  // as long as the layer lives
+
 // The cut through one closed mesh at one height.
 Layer slice_at(const Mesh& part, double z_mm);
 

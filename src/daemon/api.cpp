@@ -3,6 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "daemon/client.h"
 #include "daemon/daemon_view.h"
 #include "daemon/job_view.h"
 #include "daemon/json_values.h"
@@ -227,8 +228,7 @@ Reply reply_to(Foreman& foreman, KeyRing& keys, std::string_view text) {
   const auto key_verb = key_verbs().find(name->get<std::string>());
   if (key_verb != key_verbs().end()) return {key_verb->second(foreman.config().web, keys, request)};
   const auto verb = verbs().find(name->get<std::string>());
-  // by this sentence programs of later versions know that this daemon is older than they are
-  if (verb == verbs().end()) not_understood("The request's verb is unknown");
+  if (verb == verbs().end()) not_understood(kUnknownVerb);
   const auto starter = starters().find(verb->first);
   if (starter == starters().end()) return {verb->second(foreman, request)};
   const std::optional<JobRecord> start = starter->second(foreman, request);

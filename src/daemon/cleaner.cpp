@@ -10,6 +10,7 @@
 #include "base/names.h"
 #include "daemon/foreman.h"
 #include "daemon/move_file.h"
+#include "job/deletable_jobs.h"
 
 namespace packmerger {
 namespace {
@@ -59,7 +60,7 @@ void Cleaner::serve(double now_s) {
   look_at_room();
   look_back(wall_s);
   double until_s = announced_ ? 0 : kept_since_s(wall_s);
-  if (room_ && room_->is_short()) until_s = std::max(until_s, wall_s - kDay_s);
+  if (room_ && room_->is_short()) until_s = std::max(until_s, wall_s - kSparedAfterEnd_s);
   std::vector<JobRecord> jobs;
   if (until_s > 0)
     jobs = store_.deletable(until_s, kAtATime + static_cast<int>(left_.size() + gone_.size()));

@@ -24,9 +24,6 @@ using nlohmann::json;
 constexpr time_t kTimeout_s = 10;
 constexpr std::size_t kMaxReplyBytes = std::size_t{64} << 20;
 
-// What the daemon of every version says of a verb that it does not know (api.cpp).
-constexpr std::string_view kUnknownVerb = "The request's verb is unknown";
-
 constexpr const char* kStartIt =
     "Start it with packmergerd --config FILE, or name its socket with --socket; the package's "
     "service has it at /run/packmerger/packmergerd.sock.";

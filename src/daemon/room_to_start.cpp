@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr off_t kWanted = 4 << 20;  // bytes: the database's log and index, and what recovering adds
-constexpr double kDay_s = 86400;
 
 bool is_full(int why) { return why == ENOSPC || why == EDQUOT; }
 
@@ -47,7 +46,8 @@ Deleted make_room_to_start(const fs::path& state,
   log("the disk with " + printable(state.string()) +
       " is full: the folders of the oldest jobs are deleted");
   try {
-    for (const auto& jobs : read_deletable(state / "jobs.sqlite", unix_now_s() - kDay_s)) {
+    for (const auto& jobs :
+         read_deletable(state / "jobs.sqlite", unix_now_s() - kSparedAfterEnd_s)) {
       DeleteOrder order{jobs, {}};
       for (const std::int64_t id : jobs)
         order.folders.push_back(state / "jobs" / std::to_string(id));

@@ -42,31 +42,31 @@ struct BoundKey {
   std::string unit;
 };
 
-BoundKey bound_key(Profile& profile, const std::string& name) {
+BoundKey bound_key(Profile& profile, std::string_view name) {
   for (const Key& key : keys_of(profile))
     if (key.name == name) {
       const auto& number = std::get<NumberKey>(key.kind);
       return {number.value, number.limits, key.unit};
     }
-  throw std::logic_error("no key " + name);
+  throw std::logic_error("no key " + std::string(name));
 }
 
 // Rates are fitted as seconds for each cm³, in which time is linear.
-const std::string kRate = "fdm.deposition_cm3_h";
+constexpr std::string_view kRate = "fdm.deposition_cm3_h";
 double rate_from(double s_per_cm3) { return 3600 / s_per_cm3; }
 
 FitUnknown unknown(const Profile& profile, const LinearTerm& term) {
   Profile copy = profile;
   const Limits limits = bound_key(copy, term.key).limits;
   FitUnknown unknown{
-      term.key, term.constant(profile), limits.least, limits.most,
+      std::string(term.key), term.constant(profile), limits.least, limits.most,
       [term, profile](const PrintTerms& terms) { return term.amount(profile, terms); }};
   if (term.key == kRate) {
     unknown.low = 3600 / limits.most;
     unknown.high = 3600 / kLeastRate_cm3_h;
   }
-  if (term.key == std::string("polyjet.layer_s")) unknown.low = kLeastLayer_s;
-  unknown.scales = !std::string_view(term.key).ends_with(".start_s");
+  if (term.key == "polyjet.layer_s") unknown.low = kLeastLayer_s;
+  unknown.scales = !term.key.ends_with(".start_s");
   return unknown;
 }
 
@@ -95,7 +95,7 @@ FitTask time_task(const Profile& profile) {
   task.main_words = main.words;
   task.rest = [](const PrintTerms& terms) { return terms.path_s; };
   for (const LinearTerm& term : linear_estimate(estimator).time_s) {
-    if (term.key == nullptr) continue;
+    if (term.key.empty()) continue;
     const bool is_main = std::find(main.keys.begin(), main.keys.end(), term.key) != main.keys.end();
     (is_main ? task.main : task.extra).push_back(unknown(profile, term));
   }

@@ -9,6 +9,9 @@
 
 namespace packmerger {
 
+// Where a disk is full, jobs that ended so shortly ago keep their folders all the same.
+inline constexpr double kSparedAfterEnd_s = 86400;
+
 namespace sqlite {
 
 class Connection;

@@ -101,22 +101,8 @@ double width_mm(double area_mm2, double perimeter_mm) {
 // Slicers refuse what stands on a point or an edge: islands as wide as a line have to hold a line
 // or two.
 bool stands_on_a_point(const Layer& footprint, double line_mm) {
-  std::vector<Contour> islands;
-  for (const Contour& contour : footprint.contours)
-    if (contour.area_mm2 > 0) islands.push_back(contour);
-  std::sort(islands.begin(), islands.end(),
-            [](const Contour& a, const Contour& b) { return a.box.volume() < b.box.volume(); });
-  for (const Contour& hole : footprint.contours) {
-    if (hole.area_mm2 > 0) continue;
-    const auto around = std::find_if(islands.begin(), islands.end(), [&](const Contour& island) {
-      return island.box.contains(hole.box);
-    });
-    if (around == islands.end()) continue;
-    around->area_mm2 += hole.area_mm2;
-    around->perimeter_mm += hole.perimeter_mm;
-  }
   double printable_mm2 = 0;
-  for (const Contour& island : islands)
+  for (const Island& island : islands_of(footprint))
     if (width_mm(island.area_mm2, island.perimeter_mm) >= line_mm) printable_mm2 += island.area_mm2;
   return printable_mm2 < std::pow(2 * line_mm, 2);
 }

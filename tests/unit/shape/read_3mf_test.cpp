@@ -3,28 +3,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fixtures/fault_of.h"
 #include "fixtures/models.h"
 #include "shape/read_model.h"
 #include "shape/soup.h"
-#include "unit/shape/written.h"
+#include "unit/shape/read_3mf.h"
 
 namespace packmerger {
 namespace {
 
 using testing::HasSubstr;
+using written::cube_object;
 using written::mesh_xml;
+using written::read;
+using written::refusal;
 using written::three_mf;
-
-TriangleSoup read(const std::string& bytes) { return read_model_bytes(bytes, "", Progress()).soup; }
-
-std::string refusal(const std::string& bytes) {
-  return fixtures::refusal_of([&] { read(bytes); });
-}
-
-std::string cube_object(const std::string& attributes) {
-  return "<object " + attributes + ">" + mesh_xml(fixtures::cube(1)) + "</object>";
-}
 
 TEST(Read3mf, UnitHoldsForVerticesAndTranslations) {
   const TriangleSoup soup =
