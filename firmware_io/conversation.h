@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "firmware_io/port.h"
+#include "firmware_io/ports/port.h"
 #include "firmware_io/print_state.h"
 #include "firmware_io/remaining_time.h"
 

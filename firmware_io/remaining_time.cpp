@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "firmware_io/gcode.h"
-#include "firmware_io/s3g.h"
-#include "firmware_io/s3g_actions.h"
+#include "firmware_io/gcode/gcode.h"
+#include "firmware_io/s3g/s3g.h"
+#include "firmware_io/s3g/s3g_actions.h"
 #include "gcode/gcode_motion.h"
 
 namespace packmerger {

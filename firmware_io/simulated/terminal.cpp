@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "firmware_io/fd_port.h"
+#include "firmware_io/ports/fd_port.h"
 #include "firmware_io/simulated/marlin.h"
 #include "firmware_io/simulated/replicator.h"
 #include "firmware_io/simulated/simulator.h"

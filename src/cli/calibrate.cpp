@@ -13,9 +13,9 @@
 #include "cli/measured_prints.h"
 #include "cli/stated_prints.h"
 #include "cli/verb.h"
-#include "job/calibrate.h"
-#include "model/derived_profile.h"
-#include "model/profile_keys.h"
+#include "job/calibrate/calibrate.h"
+#include "model/profile/derived_profile.h"
+#include "model/profile/profile_keys.h"
 
 namespace packmerger::cli {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "base/duration.h"
+#include "base/time/duration.h"
 #include "cli/daemon_verb.h"
 #include "tray/warnings_json.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "job/calibrate.h"
-#include "model/derived_profile.h"
+#include "job/calibrate/calibrate.h"
+#include "model/profile/derived_profile.h"
 
 namespace packmerger::cli {
 

@@ -7,8 +7,8 @@
 #include "cli/late_stop.h"
 #include "cli/plan_options.h"
 #include "cli/verb.h"
-#include "job/advice.h"
-#include "job/comparison_table.h"
+#include "job/compare/advice.h"
+#include "job/compare/comparison_table.h"
 #include "job/plan.h"
 #include "tray/job_json.h"
 

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/names.h"
-#include "daemon/client.h"
-#include "job/comparison_table.h"
+#include "job/compare/comparison_table.h"
+#include "local/client.h"
 
 namespace packmerger::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
-#include "daemon/find_port.h"
-#include "firmware_io/devices.h"
+#include "delivery/find_port.h"
+#include "firmware_io/ports/devices.h"
 #include "model/printer.h"
 
 namespace packmerger::cli {

@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "base/duration.h"
+#include "base/time/duration.h"
 #include "cli/checks.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"
-#include "job/advice.h"
-#include "job/comparison_table.h"
+#include "job/compare/advice.h"
+#include "job/compare/comparison_table.h"
 #include "tray/job_json.h"
 
 namespace packmerger::cli {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "base/remains.h"
+#include "base/process/remains.h"
 
 namespace packmerger::cli {
 namespace {

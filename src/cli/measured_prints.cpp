@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/job_folder.h"
-#include "job/correction.h"
+#include "delivery/job_folder.h"
+#include "job/compare/unpacked.h"
 #include "job/load_models.h"
-#include "job/unpacked.h"
+#include "job/store/correction.h"
 
 namespace packmerger::cli {
 namespace {

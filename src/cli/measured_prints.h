@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "cli/daemon_verb.h"
 #include "cli/stated_prints.h"
-#include "job/calibrate.h"
+#include "job/calibrate/calibrate.h"
 #include "model/printer.h"
 #include "model/warning.h"
 

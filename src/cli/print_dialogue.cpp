@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "base/duration.h"
+#include "base/time/duration.h"
 #include "cli/verb.h"
 
 namespace packmerger::cli {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "base/duration.h"
+#include "base/time/duration.h"
 #include "cli/checks.h"
 #include "cli/daemon_verb.h"
 #include "cli/verb.h"

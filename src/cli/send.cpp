@@ -1,4 +1,4 @@
-#include "daemon/send.h"
+#include "delivery/send.h"
 
 #include <fmt/format.h>
 
@@ -18,9 +18,9 @@
 #include "cli/daemon_verb.h"
 #include "cli/print_dialogue.h"
 #include "cli/verb.h"
-#include "daemon/find_port.h"
-#include "daemon/job_folder.h"
-#include "daemon/progress_file.h"
+#include "delivery/find_port.h"
+#include "delivery/job_folder.h"
+#include "delivery/progress_file.h"
 
 namespace packmerger::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/files.h"
-#include "base/read_duration.h"
+#include "base/time/read_duration.h"
 
 namespace packmerger::cli {
 namespace {

@@ -14,23 +14,23 @@
 #include <map>
 #include <thread>
 
-#include "base/backoff.h"
-#include "base/clock.h"
 #include "base/files.h"
 #include "base/names.h"
-#include "daemon/api.h"
-#include "daemon/crew_threads.h"
-#include "daemon/daemon_view.h"
-#include "daemon/foreman.h"
-#include "daemon/front_desk.h"
-#include "daemon/news.h"
+#include "base/time/backoff.h"
+#include "base/time/clock.h"
+#include "daemon/jobs/job_manager.h"
+#include "daemon/jobs/notifier.h"
+#include "daemon/local/api.h"
+#include "daemon/local/socket_server.h"
 #include "daemon/reload.h"
 #include "daemon/room_to_start.h"
 #include "daemon/service_manager.h"
-#include "daemon/socket_server.h"
 #include "daemon/state_folder.h"
 #include "daemon/state_lock.h"
-#include "daemon/workers.h"
+#include "daemon/views/daemon_view.h"
+#include "daemon/web/web_service.h"
+#include "daemon/workers/worker_threads.h"
+#include "daemon/workers/workers.h"
 
 namespace packmerger {
 namespace {
@@ -74,17 +74,17 @@ class Signals {
 
 class Loop {
  public:
-  Loop(const DaemonConfig& config, Foreman& foreman, Crew& crew, CrewThreads& threads,
-       Queue<Event>& events, SocketServer& server, FrontDesk& desk, News& news,
-       ServiceManager& manager, Reload& reload, const Log& log)
+  Loop(const DaemonConfig& config, JobManager& job_manager, WorkQueues& queues,
+       WorkerThreads& threads, Queue<Event>& events, SocketServer& server, WebService& web,
+       Notifier& notifier, ServiceManager& manager, Reload& reload, const Log& log)
       : config_(config),
-        foreman_(foreman),
-        crew_(crew),
+        job_manager_(job_manager),
+        queues_(queues),
         threads_(threads),
         events_(events),
         server_(server),
-        desk_(desk),
-        news_(news),
+        web_(web),
+        notifier_(notifier),
         manager_(manager),
         reload_(reload),
         log_(log) {
@@ -96,18 +96,18 @@ class Loop {
       if (signal == SIGHUP) reload();
       const double now_s = steady_now_s();
       collect_events();
-      guarded(cleaning_, now_s, [&] { foreman_.clean(now_s); });
+      guarded(cleaning_, now_s, [&] { job_manager_.clean(now_s); });
       guarded(jobs_, now_s, [&] {
         take_events(now_s + kHandleFor_s);
         exchange_printers();
-        foreman_.advance(now_s);
+        job_manager_.advance(now_s);
       });
       guarded(doors_, now_s, [&] {
-        threads_.start_clerks();
+        threads_.start_folder_workers();
         server_.serve(now_s);
-        desk_.serve(now_s);
-        news_.serve(now_s);
-        manager_.status(daemon_status(foreman_));
+        web_.serve(now_s);
+        notifier_.serve(now_s);
+        manager_.status(daemon_status(job_manager_));
       });
       manager_.alive(now_s);
       wait(signals);
@@ -156,7 +156,7 @@ class Loop {
     }
     Troubles troubles;
     if (const auto now = part.standing.trouble()) troubles[part.about] = *now;
-    foreman_.note_troubles(part.about, std::move(troubles));
+    job_manager_.note_troubles(part.about, std::move(troubles));
   }
 
   // What was deleted waits for nothing: the room it made may be what the others cannot be recorded
@@ -164,7 +164,7 @@ class Loop {
   void collect_events() {
     while (std::optional<Event> event = events_.try_pop())
       if (std::holds_alternative<Deleted>(*event))
-        foreman_.handle(*event);
+        job_manager_.handle(*event);
       else
         unhandled_.push_back(std::move(*event));
   }
@@ -173,7 +173,7 @@ class Loop {
   // written to the disk several times: whoever asks something meanwhile gets his turn.
   void take_events(double until_s) {
     while (!unhandled_.empty() && steady_now_s() < until_s) {
-      foreman_.handle(unhandled_.front());
+      job_manager_.handle(unhandled_.front());
       unhandled_.pop_front();
     }
   }
@@ -194,7 +194,7 @@ class Loop {
     const std::vector<std::string> changed = reload_.exchange_printers();
     for (const std::string& name : changed)
       if (const auto found = watched_.find(name); found != watched_.end()) {
-        crew_.folders[found->second].orders.push(WatchOrder{});
+        queues_.folders[found->second].orders.push(WatchOrder{});
         watched_.erase(found);
       }
     for (const std::string& name : changed)
@@ -203,15 +203,15 @@ class Loop {
 
   void watch(const PrinterConfig& printer) {
     watched_[printer.name] = printer.folder;
-    crew_.folders[printer.folder].orders.push(
+    queues_.folders[printer.folder].orders.push(
         WatchOrder{printer.name, config_.watch, config_.retry_s});
   }
 
   void wait(const Signals& signals) {
     std::vector<pollfd> waiting = {{signals.fd(), POLLIN, 0}, {events_.fd(), POLLIN, 0}};
     server_.add_to(waiting);
-    desk_.add_to(waiting);
-    news_.add_to(waiting);
+    web_.add_to(waiting);
+    notifier_.add_to(waiting);
     // whoever stands at a door that fails would wake this at once
     if (doors_.failures > 0) std::this_thread::sleep_for(kFirstPause);
     int pause_ms = unhandled_.empty() ? kTick_ms : 0;
@@ -221,13 +221,13 @@ class Loop {
   }
 
   const DaemonConfig& config_;
-  Foreman& foreman_;
-  Crew& crew_;
-  CrewThreads& threads_;
+  JobManager& job_manager_;
+  WorkQueues& queues_;
+  WorkerThreads& threads_;
   Queue<Event>& events_;
   SocketServer& server_;
-  FrontDesk& desk_;
-  News& news_;
+  WebService& web_;
+  Notifier& notifier_;
   ServiceManager& manager_;
   Reload& reload_;
   const Log& log_;
@@ -260,21 +260,23 @@ void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
   JobStore store(config.state / "jobs.sqlite");
   Queue<Event> events;
   if (!cleared.jobs.empty()) events.push(std::move(cleared));
-  Crew crew(config);
+  WorkQueues queues(config);
   KeyRing keys(config.state / "keys.json");
-  Foreman foreman(config, store, crew, log);
-  foreman.recover();
-  CrewThreads threads(config, crew, events);
+  JobManager job_manager(config, store, queues, log);
+  job_manager.recover();
+  WorkerThreads threads(config, queues, events);
   std::exception_ptr escaped;
   std::vector<std::string> hanging;
   {
-    SocketServer server(config.socket, config.socket_mode,
-                        [&](std::string_view request) { return answer(foreman, keys, request); });
-    FrontDesk desk(config, foreman, keys, log);
-    News news(config, foreman, store, log);
+    SocketServer server(config.socket, config.socket_mode, [&](std::string_view request) {
+      return answer(job_manager, keys, request);
+    });
+    WebService web(config, job_manager, keys, log);
+    Notifier notifier(config, job_manager, store, log);
     ServiceManager manager;
-    Reload reload(config, read, foreman, threads, log);
-    Loop loop(config, foreman, crew, threads, events, server, desk, news, manager, reload, log);
+    Reload reload(config, read, job_manager, threads, log);
+    Loop loop(config, job_manager, queues, threads, events, server, web, notifier, manager, reload,
+              log);
     log("listening at " + config.socket.string());
     if (config.printers.empty())
       log("no printer is configured: add a table [printer.NAME] to the settings, and reload them");
@@ -284,7 +286,7 @@ void run_daemon(const std::function<DaemonConfig()>& read, const Log& log) {
     log("ending");
     manager.stopping();
     signals.let_through();
-    foreman.stop();
+    job_manager.stop();
     hanging = threads.finish([&] { manager.alive(steady_now_s()); });
     const std::exception_ptr unrecorded = caught([&] { loop.take_all_events(); }, log);
     if (!escaped) escaped = unrecorded;

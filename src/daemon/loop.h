@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "daemon/config.h"
+#include "daemon/settings/config.h"
 
 namespace packmerger {
 

@@ -4,11 +4,11 @@
 
 #include <iostream>
 
-#include "base/confinement.h"
 #include "base/error.h"
-#include "daemon/config.h"
+#include "base/process/confinement.h"
 #include "daemon/loop.h"
 #include "daemon/options.h"
+#include "daemon/settings/config.h"
 
 namespace {
 

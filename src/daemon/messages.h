@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "base/queue.h"
 #include "base/trouble.h"
-#include "daemon/config.h"
-#include "firmware_io/devices.h"
+#include "daemon/settings/config.h"
+#include "firmware_io/ports/devices.h"
 #include "firmware_io/print_state.h"
 
 namespace packmerger {
@@ -42,8 +42,8 @@ struct PrepareOrder {
   std::shared_ptr<std::atomic<bool>> cancel;
 };
 
-// To the clerk of a folder (folder_clerk.h), who alone touches what lies there: a disk that hangs
-// keeps nobody else waiting.
+// To the folder worker of a folder (folder_worker.h), who alone touches what lies there: a disk
+// that hangs keeps nobody else waiting.
 struct WatchOrder {     // looks for files that arrive, from now on
   std::string printer;  // whose they are; empty: no longer
   WatchConfig rules;
@@ -85,7 +85,7 @@ struct DeleteOrder {
   std::vector<std::int64_t> jobs;
   std::vector<std::filesystem::path> folders;  // of each
 };
-using ClerkOrder =
+using FolderOrder =
     std::variant<WatchOrder, ClaimOrder, FetchOrder, PlaceOrder, FileOrder, DeleteOrder>;
 
 // To a printer's sender.

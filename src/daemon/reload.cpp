@@ -59,12 +59,12 @@ std::vector<std::string> needing_restart(const DaemonConfig& now, const DaemonCo
   return keys;
 }
 
-Reload::Reload(DaemonConfig& config, std::function<DaemonConfig()> read, const Foreman& foreman,
-               CrewThreads& crew, Log log)
+Reload::Reload(DaemonConfig& config, std::function<DaemonConfig()> read,
+               const JobManager& job_manager, WorkerThreads& threads, Log log)
     : config_(config),
       read_(std::move(read)),
-      foreman_(foreman),
-      crew_(crew),
+      job_manager_(job_manager),
+      threads_(threads),
       log_(std::move(log)) {}
 
 // What other threads read is left as it is: the web server has a copy of its settings.
@@ -91,14 +91,14 @@ void Reload::read() {
 std::vector<std::string> Reload::exchange_printers() {
   if (!wanted_) return {};
   Exchange exchange = exchanged(config_.printers, *wanted_, [&](const std::string& name) {
-    return foreman_.sending_at(name) != 0;
+    return job_manager_.sending_at(name) != 0;
   });
   for (const std::string& name : exchange.changed)
-    if (config_.printer(name) != nullptr) crew_.end_sender(name);
+    if (config_.printer(name) != nullptr) threads_.end_sender(name);
   config_.printers = std::move(exchange.printers);
   for (const std::string& name : exchange.changed) {
     const PrinterConfig* printer = config_.printer(name);
-    if (printer != nullptr) crew_.start_sender(*printer);
+    if (printer != nullptr) threads_.start_sender(*printer);
     log_("printer " + name + (printer != nullptr ? ": settings taken over" : ": removed"));
   }
   if (!exchange.waits) wanted_.reset();

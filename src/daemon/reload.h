@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config.h"
-#include "daemon/crew_threads.h"
-#include "daemon/foreman.h"
+#include "daemon/jobs/job_manager.h"
+#include "daemon/settings/config.h"
+#include "daemon/workers/worker_threads.h"
 
 namespace packmerger {
 
@@ -30,8 +30,8 @@ class Reload {
 
   // read: the settings as they are now; throws Error where they cannot be used. config is changed
   // by the calls below alone; everything must outlive it.
-  Reload(DaemonConfig& config, std::function<DaemonConfig()> read, const Foreman& foreman,
-         CrewThreads& crew, Log log);
+  Reload(DaemonConfig& config, std::function<DaemonConfig()> read, const JobManager& job_manager,
+         WorkerThreads& threads, Log log);
 
   // Reads the settings. A mistake is told, and the old ones stay.
   void read();
@@ -43,8 +43,8 @@ class Reload {
  private:
   DaemonConfig& config_;
   std::function<DaemonConfig()> read_;
-  const Foreman& foreman_;
-  CrewThreads& crew_;
+  const JobManager& job_manager_;
+  WorkerThreads& threads_;
   Log log_;
   std::optional<std::vector<PrinterConfig>> wanted_;  // while not all are exchanged
 };

@@ -6,11 +6,11 @@
 
 #include <cerrno>
 
-#include "base/descriptor.h"
 #include "base/names.h"
-#include "base/wall_clock.h"
-#include "daemon/clerk.h"
-#include "job/deletable_jobs.h"
+#include "base/process/descriptor.h"
+#include "base/time/wall_clock.h"
+#include "daemon/intake/folder_actions.h"
+#include "job/store/deletable_jobs.h"
 
 namespace packmerger {
 namespace {

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstring>
 
-#include "base/descriptor.h"
+#include "base/process/descriptor.h"
 #include "http/compress.h"
 
 namespace packmerger {

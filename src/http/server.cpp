@@ -8,9 +8,9 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/descriptor.h"
 #include "base/error.h"
-#include "base/soon.h"
+#include "base/process/descriptor.h"
+#include "base/time/soon.h"
 #include "http/exchange.h"
 
 namespace packmerger {

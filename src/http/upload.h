@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/descriptor.h"
+#include "base/process/descriptor.h"
 #include "http/message.h"
 
 namespace packmerger {

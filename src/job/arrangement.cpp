@@ -1,7 +1,7 @@
 #include "job/arrangement.h"
 
-#include "printers/slice.h"
-#include "printers/support_volume.h"
+#include "printers/estimate/support_volume.h"
+#include "printers/slice/slice.h"
 
 namespace packmerger {
 

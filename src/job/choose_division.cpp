@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "job/pack_models.h"
 #include "pack/pack.h"
-#include "shape/cut_plans.h"
+#include "shape/cut/cut_plans.h"
 
 namespace packmerger {
 namespace {

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "job/arrangement.h"
-#include "shape/segment.h"
-#include "shape/smooth_cuts.h"
-#include "shape/solidify.h"
+#include "shape/divide/segment.h"
+#include "shape/divide/smooth_cuts.h"
+#include "shape/solid/solidify.h"
 
 namespace packmerger {
 

@@ -11,7 +11,7 @@
 #include "model/shell.h"
 #include "model/tet_mesh.h"
 #include "model/warning.h"
-#include "shape/premerge.h"
+#include "shape/divide/premerge.h"
 
 namespace packmerger {
 

@@ -7,9 +7,9 @@
 
 #include "base/files.h"
 #include "gcode/program_text.h"
-#include "shape/read_model.h"
-#include "shape/repair.h"
-#include "shape/unite_bodies.h"
+#include "shape/read/read_model.h"
+#include "shape/surface/repair.h"
+#include "shape/surface/unite_bodies.h"
 
 namespace packmerger {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "job/promises.h"
 #include "pack/pack.h"
-#include "printers/packing_cost.h"
-#include "shape/adjacency.h"
-#include "shape/manifold_parts.h"
-#include "shape/part_surface.h"
+#include "printers/estimate/packing_cost.h"
+#include "shape/divide/adjacency.h"
+#include "shape/divide/manifold_parts.h"
+#include "shape/divide/part_surface.h"
 
 namespace packmerger {
 namespace {

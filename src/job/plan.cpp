@@ -8,11 +8,11 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "job/comparison_key.h"
+#include "job/compare/comparison_key.h"
 #include "job/plan_steps.h"
 #include "job/timings.h"
-#include "printers/estimate.h"
-#include "printers/slice.h"
+#include "printers/estimate/estimate.h"
+#include "printers/slice/slice.h"
 
 namespace packmerger {
 namespace {

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "base/files.h"
-#include "job/advice.h"
-#include "job/comparison_key.h"
+#include "job/compare/advice.h"
+#include "job/compare/comparison_key.h"
 #include "job/plan_steps.h"
 #include "job/timings.h"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "job/advice.h"
+#include "job/compare/advice.h"
 #include "job/plan.h"
 #include "model/compared_ways.h"
 

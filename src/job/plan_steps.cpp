@@ -5,7 +5,7 @@
 
 #include "job/choose_division.h"
 #include "job/pack_models.h"
-#include "shape/hollow.h"
+#include "shape/solid/hollow.h"
 
 namespace packmerger {
 

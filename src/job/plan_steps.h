@@ -8,10 +8,10 @@
 
 #include "base/progress.h"
 #include "job/arrangement.h"
+#include "job/compare/unpacked.h"
 #include "job/divide.h"
 #include "job/load_models.h"
 #include "job/plan.h"
-#include "job/unpacked.h"
 
 namespace packmerger {
 

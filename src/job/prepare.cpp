@@ -10,8 +10,8 @@
 #include "job/plan_known.h"
 #include "job/promises.h"
 #include "job/timings.h"
-#include "printers/packing_cost.h"
-#include "printers/program.h"
+#include "printers/estimate/packing_cost.h"
+#include "printers/program/program.h"
 #include "tray/write_job_folder.h"
 
 namespace packmerger {

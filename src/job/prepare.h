@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/progress.h"
-#include "job/advice.h"
+#include "job/compare/advice.h"
 #include "job/plan.h"
 #include "model/compared_ways.h"
 #include "model/job.h"

@@ -10,11 +10,11 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/process.h"
-#include "model/derived_profile.h"
-#include "model/near_profile.h"
-#include "model/profile_file.h"
-#include "model/profile_keys.h"
+#include "base/process/process.h"
+#include "model/profile/derived_profile.h"
+#include "model/profile/near_profile.h"
+#include "model/profile/profile_file.h"
+#include "model/profile/profile_keys.h"
 
 namespace packmerger {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/descriptor.h"
-#include "base/wall_clock.h"
+#include "base/process/descriptor.h"
+#include "base/time/wall_clock.h"
 
 namespace packmerger {
 namespace {

@@ -14,7 +14,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/backoff.h"
+#include "base/time/backoff.h"
 
 namespace packmerger {
 namespace {

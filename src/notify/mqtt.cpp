@@ -11,7 +11,7 @@
 #include <random>
 #include <utility>
 
-#include "base/backoff.h"
+#include "base/time/backoff.h"
 #include "notify/retained_topics.h"
 
 namespace packmerger {

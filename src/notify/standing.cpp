@@ -1,6 +1,6 @@
 #include "notify/standing.h"
 
-#include "base/wall_clock.h"
+#include "base/time/wall_clock.h"
 
 namespace packmerger {
 

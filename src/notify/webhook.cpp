@@ -13,8 +13,8 @@
 #include <random>
 #include <utility>
 
-#include "base/backoff.h"
 #include "base/names.h"
+#include "base/time/backoff.h"
 
 namespace packmerger {
 namespace {

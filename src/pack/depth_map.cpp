@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/no_height.h"
+#include "base/sentinel_heights.h"
 #include "pack/columns.h"
 
 namespace packmerger {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/no_height.h"
+#include "base/sentinel_heights.h"
 #include "pack/columns.h"
 
 namespace packmerger {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pack/removal_plan.h"
+#include "pack/disassembly_order.h"
 
 namespace packmerger {
 namespace {
@@ -124,7 +124,7 @@ std::optional<StandingPart> PutBack::settled(const std::vector<SolidPlace>& rest
     if (!spot.open) {
       std::vector<SolidPlace> all = rest;
       all.push_back({drawing.get(), spot.x, spot.y, spot.z});
-      if (!removal_plan(fine_, all)) continue;
+      if (!disassembly_order(fine_, all)) continue;
     }
     return StandingPart{near.part, near.attitude, spot.x, spot.y, spot.z};
   }

@@ -7,8 +7,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "pack/disassembly_order.h"
 #include "pack/put_back.h"
-#include "pack/removal_plan.h"
 #include "pack/standing.h"
 
 namespace packmerger {
@@ -192,7 +192,7 @@ std::optional<Packing> rearranged(const PackProblem& problem, Packing packing, d
       places.push_back({drawings.back().get(), one.x, one.y, one.z});
       packing.parts[static_cast<std::size_t>(one.part)].pose = solids.pose(one);
     }
-    const std::optional<RemovalPlan> plan = removal_plan(fine, places);
+    const std::optional<DisassemblyOrder> plan = disassembly_order(fine, places);
     if (!plan) return std::nullopt;
     for (const int index : plan->order) {
       const auto part = static_cast<std::size_t>(standing[static_cast<std::size_t>(index)].part);

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "base/no_height.h"
+#include "base/sentinel_heights.h"
 
 namespace packmerger {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
-#include "model/profile_keys.h"
+#include "model/profile/profile_keys.h"
 #include "tray/known_ways.h"
 #include "tray/warnings_json.h"
 

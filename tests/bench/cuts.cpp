@@ -10,10 +10,10 @@
 #include "job/divide.h"
 #include "model/printer.h"
 #include "picture/preview.h"
-#include "shape/premerge.h"
-#include "shape/segment.h"
-#include "shape/smooth_cuts.h"
-#include "shape/solidify.h"
+#include "shape/divide/premerge.h"
+#include "shape/divide/segment.h"
+#include "shape/divide/smooth_cuts.h"
+#include "shape/solid/solidify.h"
 
 namespace packmerger::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include "bench/figure.h"
 #include "bench/models.h"
 #include "job/divide.h"
-#include "shape/adjacency.h"
+#include "shape/divide/adjacency.h"
 
 namespace packmerger::bench {
 namespace {

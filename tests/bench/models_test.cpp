@@ -12,9 +12,9 @@
 #include "bench/balls_and_sticks.h"
 #include "fixtures/models.h"
 #include "fixtures/profiles.h"
-#include "printers/estimate.h"
-#include "shape/hollow.h"
-#include "shape/repair.h"
+#include "printers/estimate/estimate.h"
+#include "shape/solid/hollow.h"
+#include "shape/surface/repair.h"
 
 namespace packmerger::bench {
 namespace {

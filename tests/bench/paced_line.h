@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "base/descriptor.h"
+#include "base/process/descriptor.h"
 #include "firmware_io/simulated/firmware.h"
 
 namespace packmerger::bench {

@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
-#include "base/process.h"
+#include "base/process/process.h"
 #include "bench/bench.h"
 #include "bench/fast_packing.h"
 #include "bench/kernels.h"

@@ -15,13 +15,13 @@
 #include "model/printer.h"
 #include "pack/columns.h"
 #include "pack/ways_up.h"
-#include "shape/adjacency.h"
-#include "shape/cut_plans.h"
-#include "shape/part_surface.h"
-#include "shape/premerge.h"
-#include "shape/segment.h"
-#include "shape/smooth_cuts.h"
-#include "shape/solidify.h"
+#include "shape/cut/cut_plans.h"
+#include "shape/divide/adjacency.h"
+#include "shape/divide/part_surface.h"
+#include "shape/divide/premerge.h"
+#include "shape/divide/segment.h"
+#include "shape/divide/smooth_cuts.h"
+#include "shape/solid/solidify.h"
 
 namespace packmerger::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "bench/models.h"
 #include "fixtures/profiles.h"
-#include "printers/slice.h"
+#include "printers/slice/slice.h"
 
 namespace packmerger::bench {
 namespace {

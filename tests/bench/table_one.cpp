@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/models.h"
-#include "job/advice.h"
+#include "job/compare/advice.h"
 #include "picture/preview.h"
 
 namespace packmerger::bench {

@@ -45,7 +45,7 @@ def files(*suffixes):
 
 
 def folder_of(path):
-    """"shape" for src/shape/repair.cpp, "printers" for printers/slice.cpp; None elsewhere."""
+    """"shape" for src/shape/surface/repair.cpp, "printers" for printers/slice/slice.cpp; None elsewhere."""
     parts = path.relative_to(SOURCE).parts
     name = parts[1] if parts[0] == "src" and len(parts) > 2 else parts[0]
     return name if name in FOLDERS else None

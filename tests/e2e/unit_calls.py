@@ -14,7 +14,7 @@ set_robust_list set_tid_address setpgid setpriority setsid setsockopt signalfd4 
 timerfd_create uname unlink unlinkat wait4 write
 """.split()
 
-# What confines the processes that read models (base/confinement.cpp).
+# What confines the processes that read models (base/process/confinement.cpp).
 CONFINING = "landlock_create_ruleset landlock_add_rule landlock_restrict_self seccomp prctl".split()
 
 # What another run may need: clients and servers of sockets and links, an abort's signal, the end of a process.

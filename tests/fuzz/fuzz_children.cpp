@@ -11,12 +11,12 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/api.h"
-#include "daemon/child_json.h"
-#include "daemon/foreman.h"
-#include "daemon/job_folder.h"
-#include "daemon/progress_file.h"
-#include "daemon/worker.h"
+#include "daemon/jobs/job_manager.h"
+#include "daemon/local/api.h"
+#include "daemon/workers/worker.h"
+#include "delivery/child_json.h"
+#include "delivery/job_folder.h"
+#include "delivery/progress_file.h"
 #include "fuzz/scratch.h"
 
 namespace {
@@ -42,8 +42,8 @@ struct Office {
     config.printers = {any, maker};
     fs::create_directories(config.state);
     store = std::make_unique<JobStore>(config.state / "jobs.sqlite");
-    crew = std::make_unique<Crew>(config);
-    foreman = std::make_unique<Foreman>(config, *store, *crew, [](const std::string&) {});
+    queues = std::make_unique<WorkQueues>(config);
+    job_manager = std::make_unique<JobManager>(config, *store, *queues, [](const std::string&) {});
     keys = std::make_unique<KeyRing>(config.state / "keys.json");
   }
 
@@ -63,17 +63,17 @@ struct Office {
 
   // The event is taken, and the job can be shown and cancelled.
   void hears(std::int64_t job, const Event& event) const {
-    foreman->handle(event);
+    job_manager->handle(event);
     for (const char* verb : {"jobs.show", "jobs.cancel"}) {
       const nlohmann::json request = {{"verb", verb}, {"id", job}};
-      if (!nlohmann::json::accept(answer(*foreman, *keys, request.dump()))) std::abort();
+      if (!nlohmann::json::accept(answer(*job_manager, *keys, request.dump()))) std::abort();
     }
   }
 
   DaemonConfig config;
   std::unique_ptr<JobStore> store;
-  std::unique_ptr<Crew> crew;
-  std::unique_ptr<Foreman> foreman;
+  std::unique_ptr<WorkQueues> queues;
+  std::unique_ptr<JobManager> job_manager;
   std::unique_ptr<KeyRing> keys;
 };
 

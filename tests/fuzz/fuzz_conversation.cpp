@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g.h"
-#include "firmware_io/s3g_link.h"
+#include "firmware_io/gcode/gcode_link.h"
+#include "firmware_io/s3g/s3g.h"
+#include "firmware_io/s3g/s3g_link.h"
 
 namespace {
 

@@ -11,10 +11,10 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/api.h"
-#include "daemon/config.h"
-#include "daemon/foreman.h"
-#include "daemon/job_folder.h"
+#include "daemon/jobs/job_manager.h"
+#include "daemon/local/api.h"
+#include "daemon/settings/config.h"
+#include "delivery/job_folder.h"
 #include "fuzz/scratch.h"
 
 namespace {
@@ -63,25 +63,25 @@ struct Office {
     fs::create_directories(config.state);
     fs::create_directories(printer.folder);
     store = std::make_unique<JobStore>(config.state / "jobs.sqlite");
-    crew = std::make_unique<Crew>(config);
-    foreman = std::make_unique<Foreman>(config, *store, *crew, [](const std::string&) {});
+    queues = std::make_unique<WorkQueues>(config);
+    job_manager = std::make_unique<JobManager>(config, *store, *queues, [](const std::string&) {});
     keys = std::make_unique<KeyRing>(config.state / "keys.json");
-    foreman->recover();
+    job_manager->recover();
     std::ofstream(printer.folder / "a.stl") << "a model";
-    foreman->handle(Arrived{printer.name, printer.folder / "a.stl", false});
-    foreman->handle(Claimed{1, ClaimOutcome::kGone, {}});
+    job_manager->handle(Arrived{printer.name, printer.folder / "a.stl", false});
+    job_manager->handle(Claimed{1, ClaimOutcome::kGone, {}});
   }
 
   DaemonConfig config;
   std::unique_ptr<JobStore> store;
-  std::unique_ptr<Crew> crew;
-  std::unique_ptr<Foreman> foreman;
+  std::unique_ptr<WorkQueues> queues;
+  std::unique_ptr<JobManager> job_manager;
   std::unique_ptr<KeyRing> keys;
 };
 
 void request(std::string_view text) {
   static const Office office;
-  const auto reply = nlohmann::json::parse(answer(*office.foreman, *office.keys, text));
+  const auto reply = nlohmann::json::parse(answer(*office.job_manager, *office.keys, text));
   if (!reply.at("ok").get<bool>() && reply.at("error").at("hint").get<std::string>().empty())
     std::abort();
 }

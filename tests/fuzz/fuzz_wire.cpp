@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "firmware_io/gcode.h"
-#include "firmware_io/s3g.h"
-#include "firmware_io/s3g_actions.h"
-#include "firmware_io/usb_printer.h"
+#include "firmware_io/gcode/gcode.h"
+#include "firmware_io/s3g/s3g.h"
+#include "firmware_io/s3g/s3g_actions.h"
+#include "firmware_io/usb/usb_printer.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "shape/read_model.h"
+#include "shape/read/read_model.h"
 
 namespace packmerger::fuzz {
 

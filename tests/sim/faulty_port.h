@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "firmware_io/port.h"
+#include "firmware_io/ports/port.h"
 #include "firmware_io/simulated/firmware.h"
 
 namespace packmerger::test {

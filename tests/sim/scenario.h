@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g_link.h"
+#include "firmware_io/gcode/gcode_link.h"
+#include "firmware_io/s3g/s3g_link.h"
 #include "sim/faulty_port.h"
 
 namespace packmerger::test {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <future>
 
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g_link.h"
+#include "firmware_io/gcode/gcode_link.h"
+#include "firmware_io/s3g/s3g_link.h"
 #include "sim/programs.h"
 
 namespace packmerger::test {

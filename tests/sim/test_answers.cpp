@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "firmware_io/heat_watch.h"
+#include "firmware_io/gcode/heat_watch.h"
 #include "firmware_io/simulated/marlin.h"
 #include "sim/programs.h"
 #include "sim/scenario.h"

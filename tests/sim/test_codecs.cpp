@@ -4,11 +4,11 @@
 #include <rapidcheck.h>
 
 #include "base/error.h"
-#include "firmware_io/gcode.h"
-#include "firmware_io/gcode_link.h"
-#include "firmware_io/s3g.h"
-#include "firmware_io/s3g_actions.h"
-#include "firmware_io/s3g_link.h"
+#include "firmware_io/gcode/gcode.h"
+#include "firmware_io/gcode/gcode_link.h"
+#include "firmware_io/s3g/s3g.h"
+#include "firmware_io/s3g/s3g_actions.h"
+#include "firmware_io/s3g/s3g_link.h"
 #include "sim/programs.h"
 
 namespace packmerger::test {

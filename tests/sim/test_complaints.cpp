@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware_io/gcode.h"
+#include "firmware_io/gcode/gcode.h"
 #include "firmware_io/simulated/marlin.h"
 #include "sim/programs.h"
 #include "sim/scenario.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/files.h"
-#include "base/process.h"
-#include "firmware_io/s3g.h"
-#include "firmware_io/s3g_actions.h"
+#include "base/process/process.h"
+#include "firmware_io/s3g/s3g.h"
+#include "firmware_io/s3g/s3g_actions.h"
 
 namespace packmerger::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <condition_variable>
 #include <thread>
 
-#include "firmware_io/hotplug.h"
+#include "firmware_io/ports/hotplug.h"
 #include "sim/usb_bed.h"
 
 namespace packmerger::test {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware_io/gcode_place.h"
-#include "firmware_io/gcode_tally.h"
-#include "firmware_io/heat_watch.h"
+#include "firmware_io/gcode/gcode_place.h"
+#include "firmware_io/gcode/gcode_tally.h"
+#include "firmware_io/gcode/heat_watch.h"
 
 namespace packmerger::test {
 namespace {

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware_io/s3g.h"
-#include "firmware_io/s3g_axes.h"
-#include "firmware_io/s3g_buffer.h"
+#include "firmware_io/s3g/s3g.h"
+#include "firmware_io/s3g/s3g_axes.h"
+#include "firmware_io/s3g/s3g_buffer.h"
 #include "firmware_io/simulated/replicator.h"
 #include "sim/programs.h"
 #include "sim/scenario.h"

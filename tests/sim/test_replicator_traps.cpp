@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "firmware_io/s3g.h"
+#include "firmware_io/s3g/s3g.h"
 #include "firmware_io/simulated/replicator.h"
 #include "sim/programs.h"
 #include "sim/scenario.h"

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware_io/gcode.h"
-#include "firmware_io/gcode_script.h"
-#include "firmware_io/s3g_actions.h"
+#include "firmware_io/gcode/gcode.h"
+#include "firmware_io/gcode/gcode_script.h"
+#include "firmware_io/s3g/s3g_actions.h"
 #include "sim/programs.h"
 
 namespace packmerger::test {

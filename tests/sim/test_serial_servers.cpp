@@ -9,8 +9,8 @@
 
 #include <array>
 
-#include "base/descriptor.h"
-#include "firmware_io/port.h"
+#include "base/process/descriptor.h"
+#include "firmware_io/ports/port.h"
 #include "sim/terminal_printer.h"
 
 namespace packmerger::test {

@@ -4,8 +4,8 @@
 
 #include <future>
 
-#include "base/process.h"
-#include "firmware_io/port.h"
+#include "base/process/process.h"
+#include "firmware_io/ports/port.h"
 #include "sim/programs.h"
 #include "sim/terminal_printer.h"
 

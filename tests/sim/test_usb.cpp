@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "firmware_io/devices.h"
-#include "firmware_io/usb_link.h"
+#include "firmware_io/ports/devices.h"
+#include "firmware_io/usb/usb_link.h"
 #include "sim/usb_bed.h"
 
 namespace packmerger::test {

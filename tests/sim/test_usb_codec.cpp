@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "firmware_io/usb_printer.h"
+#include "firmware_io/usb/usb_printer.h"
 
 namespace packmerger::test {
 namespace {

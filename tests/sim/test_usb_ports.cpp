@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "daemon/find_port.h"
+#include "delivery/find_port.h"
 #include "sim/usb_bed.h"
 
 namespace packmerger::test {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config.h"
+#include "daemon/settings/config.h"
 #include "install/manual/command_line.h"
 #include "model/printer.h"
 

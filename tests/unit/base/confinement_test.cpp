@@ -1,5 +1,5 @@
 // What a confined child tries is refused; what it needs is not.
-#include "base/confinement.h"
+#include "base/process/confinement.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "base/process.h"
+#include "base/process/process.h"
 
 namespace packmerger {
 namespace {

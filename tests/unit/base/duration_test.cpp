@@ -1,9 +1,9 @@
-#include "base/read_duration.h"
+#include "base/time/read_duration.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "base/duration.h"
+#include "base/time/duration.h"
 
 namespace packmerger {
 namespace {

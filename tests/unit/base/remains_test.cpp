@@ -1,4 +1,4 @@
-#include "base/remains.h"
+#include "base/process/remains.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/files.h"
-#include "base/process.h"
+#include "base/process/process.h"
 
 namespace packmerger {
 namespace {

@@ -1,10 +1,10 @@
 // What children write is read, or refused with a sentence; the daemon goes on whatever it is.
-#include "daemon/child_json.h"
+#include "delivery/child_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/job_folder.h"
+#include "delivery/job_folder.h"
 #include "fixtures/fault_of.h"
 #include "unit/daemon/workshop.h"
 
@@ -65,7 +65,7 @@ TEST(ChildJson, WhatIsNestedTooDeeplyIsRefused) {
 // As if the check had overlooked something.
 TEST(ChildJson, WhateverIsThrownFailsTheJobAndNotTheDaemon) {
   Workshop shop;
-  shop.crew_->senders.erase("sim");  // whoever asks for it is thrown std::out_of_range
+  shop.queues_->senders.erase("sim");  // whoever asks for it is thrown std::out_of_range
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order());
   EXPECT_EQ(shop.job(1).state, JobState::kFailed);

@@ -1,4 +1,4 @@
-#include "daemon/choose_printer.h"
+#include "daemon/jobs/choose_printer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -150,18 +150,18 @@ TEST(AutoPrinter, ComparesAllAndProposesTheCheapest) {
   EXPECT_THAT(prepare.argv, testing::Contains("solid"));
   shop.prepare(prepare);
   EXPECT_EQ(shop.view(1).at("waits_for"), "approval") << "sim itself approves everything";
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   shop.send_order("sim");
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   const json note = json::parse(read_file(file.parent_path() / "done/a.stl.result.json", 100000));
   EXPECT_EQ(note.at("choice"), choice);
 }
 
 TEST(AutoPrinter, TheSoonestCountsWhatIsPrintingAndQueued) {
   AutoWorkshop shop(Prefer::kSoonest);
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.drop("real", "running.stl");
   shop.prepare(shop.prepare_order().value());
   shop.send_order("real");
@@ -184,7 +184,7 @@ TEST(AutoPrinter, TheSoonestCountsWhatIsStillBeingPrepared) {
   shop.drop("real", "before.gcode");
   ASSERT_TRUE(shop.check_order()) << "and its check takes its time";
   shop.drop("real", "held.gcode");
-  shop.foreman_->hold(2);
+  shop.job_manager_->hold(2);
   shop.drop("any", "a.stl");
   const PrepareOrder order = shop.prepare_order().value();
   shop.drop("sim", "behind.stl");
@@ -225,10 +225,10 @@ TEST(AutoPrinter, CancelledWhileComparingItIsFiled) {
   AutoWorkshop shop(Prefer::kCheapest);
   const fs::path file = shop.drop("any", "a.stl");
   const PrepareOrder order = shop.prepare_order().value();
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   EXPECT_TRUE(*order.cancel);
   shop.tell(PrepareFailed{1, {Fault::kInterrupted, "Interrupted", ""}});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   EXPECT_TRUE(fs::exists(file.parent_path() / "failed/a.stl"));
 }
 

@@ -21,7 +21,7 @@ class Cleaning : public testing::Test {
     SendEnded end{order.job, SendOutcome::kDone, {}, ""};
     end.printed_s = 71;
     shop_.tell(end);
-    shop_.run_the_clerk();
+    shop_.run_the_folder_worker();
     JobRecord job = shop_.job(order.job);
     job.ended_s -= days_ago * kDay_s;
     shop_.store_->save(job);
@@ -30,7 +30,7 @@ class Cleaning : public testing::Test {
   void wait() {
     shop_.now_s_ += 60;
     shop_.turn();
-    shop_.run_the_clerk();
+    shop_.run_the_folder_worker();
   }
   fs::path folder(std::int64_t id) { return shop_.config_.state / "jobs" / std::to_string(id); }
   bool is_there(std::int64_t id) { return fs::exists(folder(id)); }
@@ -100,17 +100,17 @@ TEST_F(Cleaning, TheOldestGoWhereTheDiskGetsFullButNoneOfTheLastDay) {
   const std::int64_t old = printed(3), new_one = printed(0.5);
   shop_.config_.keep_jobs = shop_.config_.keep_days = 0;
   shop_.config_.web.most_upload_bytes = std::uint64_t{1} << 30;
-  Queue<ClerkOrder> clerk;
+  Queue<FolderOrder> folder_worker;
   DiskSpace disk{std::uint64_t{100} << 30, std::uint64_t{4} << 30};
   std::string log;
   Cleaner cleaner(
-      shop_.config_, *shop_.store_, clerk, [&](const std::string& line) { log += line + "\n"; },
-      [&](const fs::path&) { return disk; });
+      shop_.config_, *shop_.store_, folder_worker,
+      [&](const std::string& line) { log += line + "\n"; }, [&](const fs::path&) { return disk; });
   double now_s = 0;
   const auto look = [&](double free_gib) {
     disk.free_bytes = static_cast<std::uint64_t>(free_gib * (1 << 30));
     cleaner.serve(now_s += 60);
-    return clerk.try_pop();
+    return folder_worker.try_pop();
   };
   EXPECT_FALSE(look(3.5));
   EXPECT_FALSE(cleaner.room()->is_low());
@@ -128,29 +128,29 @@ TEST_F(Cleaning, TheLargestUploadFindsRoomOnASmallDisk) {
   printed(3);
   shop_.config_.keep_jobs = shop_.config_.keep_days = 0;
   shop_.config_.web.most_upload_bytes = std::uint64_t{1} << 30;
-  Queue<ClerkOrder> clerk;
+  Queue<FolderOrder> folder_worker;
   const DiskSpace disk{std::uint64_t{8} << 30, std::uint64_t{5} << 28};
   Cleaner cleaner(
-      shop_.config_, *shop_.store_, clerk, [](const std::string&) {},
+      shop_.config_, *shop_.store_, folder_worker, [](const std::string&) {},
       [&](const fs::path&) { return disk; });
   cleaner.serve(60);
-  EXPECT_TRUE(clerk.try_pop());
+  EXPECT_TRUE(folder_worker.try_pop());
   EXPECT_GE(cleaner.room()->wanted_bytes,
             HttpLimits{}.spare_bytes + shop_.config_.web.most_upload_bytes);
 }
 
 TEST_F(Cleaning, AJobPrintedAgainNeedsTheFolder) {
   const std::int64_t old = printed(100);
-  shop_.foreman_->hold(shop_.foreman_->again(old).id);
+  shop_.job_manager_->hold(shop_.job_manager_->again(old).id);
   wait();
   EXPECT_TRUE(is_there(old));
   EXPECT_EQ(remove(old).at("error").at("fault"), 75) << "job 2 needs it";
-  shop_.foreman_->cancel(2);
+  shop_.job_manager_->cancel(2);
   EXPECT_TRUE(remove(2).at("ok"));
   EXPECT_FALSE(shop_.ask({{"verb", "jobs.again"}, {"id", 2}}).at("ok") &&
                shop_.job(3).state == JobState::kApproved)
       << "it is being deleted";
-  shop_.run_the_clerk();
+  shop_.run_the_folder_worker();
   EXPECT_FALSE(is_there(old));
   EXPECT_GT(shop_.job(old).deleted_s, 0) << "with the job that shares it";
 }
@@ -161,20 +161,20 @@ TEST_F(Cleaning, ByHandAndThenPreparedAnew) {
   EXPECT_EQ(remove(2).at("error").at("fault"), 2) << "it has not ended";
   EXPECT_EQ(remove(9).at("error").at("fault"), 66);
   EXPECT_TRUE(remove(job).at("ok"));
-  EXPECT_TRUE(is_there(job)) << "the clerk has not come to it";
+  EXPECT_TRUE(is_there(job)) << "the folder_worker has not come to it";
   EXPECT_THAT(shop_.log_, testing::HasSubstr("its folder is being deleted"));
   EXPECT_THAT(std::string(remove(job).at("error").at("what")),
               testing::EndsWith("is being deleted"));
-  shop_.run_the_clerk();
+  shop_.run_the_folder_worker();
   EXPECT_FALSE(is_there(job));
   EXPECT_EQ(remove(job).at("error").at("fault"), 2) << "it is deleted";
   EXPECT_THAT(std::string(remove(job).at("error").at("what")), testing::EndsWith(" is deleted"));
   EXPECT_TRUE(shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("ok"));
-  shop_.run_the_clerk();
+  shop_.run_the_folder_worker();
   EXPECT_EQ(shop_.job(3).state, JobState::kReceived) << "from the model below done/";
   fs::remove(shop_.job(job).filed);
   const json gone = shop_.ask({{"verb", "jobs.again"}, {"id", job}}).at("result");
-  shop_.run_the_clerk();
+  shop_.run_the_folder_worker();
   EXPECT_EQ(shop_.view(gone.at("id")).at("state"), "failed");
   EXPECT_NE(shop_.view(gone.at("id")).at("hint"), "");
 }
@@ -193,7 +193,7 @@ TEST_F(Cleaning, GoesOnWhereADaemonDied) {
 TEST_F(Cleaning, AWishOutlivesTheDaemon) {
   const std::int64_t job = printed(0);
   EXPECT_TRUE(remove(job).at("ok"));
-  shop_.start();  // before the clerk came to it
+  shop_.start();  // before the folder worker came to it
   EXPECT_TRUE(is_there(job));
   wait();
   EXPECT_FALSE(is_there(job));
@@ -218,7 +218,7 @@ TEST_F(Cleaning, WhatCannotBeDeletedIsTriedEverLessOftenToldOnceAndSeen) {
     for (const double end_s = shop_.now_s_ + 3600 * hours; shop_.now_s_ < end_s;) {
       shop_.now_s_ += 30;
       shop_.turn();
-      while (const std::optional<ClerkOrder> order = shop_.clerk_order()) {
+      while (const std::optional<FolderOrder> order = shop_.folder_order()) {
         Deleted deleted;
         for (const std::int64_t job : std::get<DeleteOrder>(*order).jobs)
           (job == stays ? deleted.left : deleted.jobs).push_back(job);
@@ -253,7 +253,7 @@ TEST_F(Cleaning, WhatCannotBeDeletedIsTriedEverLessOftenToldOnceAndSeen) {
   shop_.config_.keep_days = 90;
   shop_.now_s_ += 7200;
   shop_.turn();
-  shop_.run_the_clerk();
+  shop_.run_the_folder_worker();
   EXPECT_FALSE(is_there(stays));
   EXPECT_EQ(troubles(), json::array());
 }

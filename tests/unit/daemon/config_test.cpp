@@ -1,4 +1,4 @@
-#include "daemon/config.h"
+#include "daemon/settings/config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/model_options.h"
+#include "daemon/settings/model_options.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/find_port.h"
+#include "delivery/find_port.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,21 +10,21 @@ namespace {
 // A job that was prepared, with a doubt or without, and cancelled before anything else.
 JobRecord cancelled(Workshop& shop, const std::string& printer, bool pays) {
   shop.drop(printer, "a.stl");
-  shop.foreman_->hold(shop.prepare_order().value().job);
+  shop.job_manager_->hold(shop.prepare_order().value().job);
   const std::int64_t id = shop.store_->open_jobs().rbegin()->first;
   PrepareOrder order;
   order.job = id;
   order.out = shop.job(id).folder;
   shop.prepare(order, 1, pays);
-  return shop.foreman_->cancel(id);
+  return shop.job_manager_->cancel(id);
 }
 
 TEST(Again, WhatNobodyApprovedComesBackWithItsDoubt) {
   for (const std::string printer : {"sim", "hand"}) {
     Workshop shop;
     const JobRecord old = cancelled(shop, printer, false);
-    const JobRecord again = shop.foreman_->again(old.id);
-    shop.foreman_->advance(shop.now_s_);
+    const JobRecord again = shop.job_manager_->again(old.id);
+    shop.job_manager_->advance(shop.now_s_);
     EXPECT_FALSE(shop.send_order(printer));
     const json view = shop.view(again.id);
     EXPECT_EQ(view.at("state"), "ready");
@@ -32,22 +32,22 @@ TEST(Again, WhatNobodyApprovedComesBackWithItsDoubt) {
     EXPECT_EQ(view.at("reason"), "packing does not pay");
     EXPECT_EQ(view.at("doubt"), "packing does not pay");
     EXPECT_EQ(view.at("approved"), false);
-    shop.foreman_->cancel(again.id);
-    const JobRecord third = shop.foreman_->again(again.id);
+    shop.job_manager_->cancel(again.id);
+    const JobRecord third = shop.job_manager_->again(again.id);
     EXPECT_EQ(third.reason, "packing does not pay") << "nor does another time approve it";
-    shop.foreman_->approve(third.id);
-    shop.foreman_->advance(shop.now_s_);
+    shop.job_manager_->approve(third.id);
+    shop.job_manager_->advance(shop.now_s_);
     EXPECT_TRUE(shop.send_order(printer));
   }
 }
 
 TEST(Again, WithoutADoubtTheSettingsDecideAsEver) {
   Workshop shop;
-  const JobRecord again = shop.foreman_->again(cancelled(shop, "hand", true).id);
-  shop.foreman_->advance(shop.now_s_);
+  const JobRecord again = shop.job_manager_->again(cancelled(shop, "hand", true).id);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.job(again.id).state, JobState::kReady) << "approve = ask";
-  const JobRecord other = shop.foreman_->again(cancelled(shop, "sim", true).id);
-  shop.foreman_->advance(shop.now_s_);
+  const JobRecord other = shop.job_manager_->again(cancelled(shop, "sim", true).id);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.job(other.id).state, JobState::kSending) << "approve = auto";
 }
 
@@ -55,12 +55,12 @@ TEST(Again, WhatWasApprovedNeedsNoSecondWord) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order(), 1, false);
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   shop.send_order("sim");
   shop.tell(SendEnded{1, SendOutcome::kFailed, {Fault::kIo, "unplugged", "x"}, ""});
-  shop.foreman_->again(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->again(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_TRUE(shop.send_order("sim"));
 }
 
@@ -68,15 +68,15 @@ TEST(Again, WhatWasApprovedNeedsNoSecondWord) {
 class Orders : public testing::Test {
  protected:
   Orders() {
-    shop_.foreman_->clear("real");
+    shop_.job_manager_->clear("real");
     shop_.drop("real", "a.stl");
     shop_.prepare(*shop_.prepare_order());
     shop_.send_order("real");
     shop_.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
-    shop_.run_the_clerk();
+    shop_.run_the_folder_worker();
   }
   bool starts() {
-    shop_.foreman_->advance(shop_.now_s_);
+    shop_.job_manager_->advance(shop_.now_s_);
     return shop_.send_order("real").has_value();
   }
 
@@ -84,13 +84,13 @@ class Orders : public testing::Test {
 };
 
 TEST_F(Orders, AgainDoesNotPrintAfterARestart) {
-  shop_.foreman_->again(1);
+  shop_.job_manager_->again(1);
   EXPECT_FALSE(starts()) << "the bed is not clear";
   shop_.start();
   EXPECT_EQ(shop_.view(2).at("waits_for"), "hold");
-  shop_.foreman_->clear("real");
+  shop_.job_manager_->clear("real");
   EXPECT_FALSE(starts()) << "the order was given to the daemon before this one";
-  shop_.foreman_->approve(2);
+  shop_.job_manager_->approve(2);
   EXPECT_TRUE(starts());
 }
 
@@ -98,20 +98,20 @@ TEST_F(Orders, NorDoesAnUploadThatWasToBePrintedAtOnce) {
   shop_.config_.printers[1].approve = Approve::kAsk;
   const fs::path file = shop_.folder_.path() / "b.stl";
   std::ofstream(file) << "b";
-  shop_.foreman_->uploaded({.printer = "real", .name = "b.stl", .file = file, .at_once = true});
+  shop_.job_manager_->uploaded({.printer = "real", .name = "b.stl", .file = file, .at_once = true});
   shop_.start();
   shop_.prepare(*shop_.prepare_order());
-  shop_.foreman_->clear("real");
+  shop_.job_manager_->clear("real");
   EXPECT_FALSE(starts());
   EXPECT_EQ(shop_.view(2).at("waits_for"), "approval");
 }
 
 TEST_F(Orders, APersonsApprovalLasts) {
-  shop_.foreman_->again(1);
-  shop_.foreman_->hold(2);
-  shop_.foreman_->approve(2);
+  shop_.job_manager_->again(1);
+  shop_.job_manager_->hold(2);
+  shop_.job_manager_->approve(2);
   shop_.start();
-  shop_.foreman_->clear("real");
+  shop_.job_manager_->clear("real");
   EXPECT_TRUE(starts());
 }
 

@@ -63,13 +63,13 @@ TEST(Corrections, AreNotTaughtByCancelledFailedOrLongPausedPrints) {
 
 TEST(Corrections, TraysAddUpThroughARestart) {
   Workshop shop;
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.drop("real", "a.stl");
   shop.prepare(shop.prepare_order().value(), 2);
   shop.tell(printed(shop.send_order("real")->job, 40, 5));
   shop.start();
-  shop.foreman_->clear("real");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->clear("real");
+  shop.job_manager_->advance(shop.now_s_);
   shop.tell(printed(shop.send_order("real")->job, 50, 6));
   EXPECT_EQ(shop.job(1).state, JobState::kDone);
   EXPECT_DOUBLE_EQ(shop.job(1).printed_s, 90);
@@ -79,8 +79,8 @@ TEST(Corrections, TraysAddUpThroughARestart) {
 TEST(Corrections, APrintAgainTeachesToo) {
   Workshop shop;
   for (int i = 0; i < 2; ++i) print(shop, 90);
-  const JobRecord again = shop.foreman_->again(1);
-  shop.foreman_->advance(shop.now_s_);
+  const JobRecord again = shop.job_manager_->again(1);
+  shop.job_manager_->advance(shop.now_s_);
   shop.send_order("sim");
   shop.tell(printed(again.id, 90));
   EXPECT_NEAR(printer_view_of(shop).at("corrections").at(0).at("factor"), 1.5, 1e-9);

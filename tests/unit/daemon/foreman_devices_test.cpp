@@ -49,11 +49,11 @@ TEST_F(DevicesOfThePrinters, AJobStartsAtOnceWhenItsPortIsBack) {
   put_at(port.string());
   let_a_job_wait();
   fs::remove(port);
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->advance(shop_.now_s_);
   EXPECT_EQ(connected(), false);
   EXPECT_EQ(shop_.view(1).at("waits_for"), "not_connected");
   std::ofstream(port).flush();
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->advance(shop_.now_s_);
   EXPECT_EQ(connected(), true);
   EXPECT_TRUE(shop_.send_order("sim")) << "without the rest of its time";
 }
@@ -98,7 +98,7 @@ TEST_F(DevicesOfThePrinters, BehindASerialServerTheLastJobTells) {
   EXPECT_EQ(connected(), false);
   EXPECT_NE(shop_.view(1).at("waits_for"), "not_connected") << "only another attempt tells";
   shop_.now_s_ += shop_.config_.retry_s;
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->advance(shop_.now_s_);
   ASSERT_TRUE(shop_.send_order("sim"));
   PrintReport report;
   shop_.tell(SendProgress{1, report});
@@ -125,7 +125,7 @@ TEST_F(DevicesOfThePrinters, PortsSetByAReloadAreAdvisedOnToo) {
   shop_.tell(DevicesSeen{Devices{}, {}});
   EXPECT_EQ(shop_.log_.find("warning"), std::string::npos);
   shop_.config_.printers[2].port = "/dev/ttyACM7";
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->advance(shop_.now_s_);
   EXPECT_THAT(shop_.log_, HasSubstr("warning: printer sim: /dev/ttyACM7 may be another device"));
 }
 
@@ -135,13 +135,13 @@ TEST_F(DevicesOfThePrinters, WhatIsHandedOverIsNotConnected) {
 
 // Job 1 is with the sender of a printer whose bed was clear.
 void send_one(Workshop& shop) {
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.drop("real", "a.stl");
   shop.prepare(*shop.prepare_order());
   ASSERT_TRUE(shop.send_order("real"));
 }
 
-TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
+TEST(JobManager, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
   struct Ending {
     SendOutcome outcome;
     Failure failure;
@@ -170,10 +170,10 @@ TEST(Foreman, APrintThatEndsBeforeItBeganLeavesTheBedClear) {
   }
 }
 
-TEST(Foreman, AStopBeforeThePrintBeganLosesNothing) {
+TEST(JobManager, AStopBeforeThePrintBeganLosesNothing) {
   Workshop shop;
   ASSERT_NO_FATAL_FAILURE(send_one(shop));
-  shop.foreman_->stop();
+  shop.job_manager_->stop();
   SendEnded end{1, SendOutcome::kCancelled, {Fault::kInterrupted, "Cancelled", ""}, ""};
   end.untouched = true;
   shop.tell(end);
@@ -183,13 +183,13 @@ TEST(Foreman, AStopBeforeThePrintBeganLosesNothing) {
 }
 
 // The sender tells that it is tried again, and somebody cancels it before that is heard.
-TEST(Foreman, WhatWasCancelledIsNotTriedAgain) {
+TEST(JobManager, WhatWasCancelledIsNotTriedAgain) {
   for (const Fault fault : {Fault::kUnavailable, Fault::kBusy})
     for (const bool is_stopping : {false, true}) {
       Workshop shop;
       ASSERT_NO_FATAL_FAILURE(send_one(shop));
-      shop.foreman_->cancel(1);
-      if (is_stopping) shop.foreman_->stop();
+      shop.job_manager_->cancel(1);
+      if (is_stopping) shop.job_manager_->stop();
       SendEnded end{1, SendOutcome::kNotStarted, {fault, "Nobody answers", ""}, ""};
       end.untouched = fault != Fault::kBusy;
       shop.tell(end);

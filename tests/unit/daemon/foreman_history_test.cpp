@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/progress_file.h"
+#include "delivery/progress_file.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -26,7 +26,7 @@ TEST(History, TheSameNameAgainIsASecondJobAndTheSameBytesAreTold) {
 
 TEST(History, KeepsEverythingAboutAPrintAcrossARestart) {
   Workshop shop;
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.drop("real", "a.stl");
   shop.tell(Hashed{1, std::string(64, 'a')});
   shop.prepare(shop.prepare_order().value());
@@ -35,7 +35,7 @@ TEST(History, KeepsEverythingAboutAPrintAcrossARestart) {
   SendEnded end{1, SendOutcome::kDone, {}, ""};
   end.printed_s = 71;
   shop.tell(end);
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   shop.start();
   const json job = shop.view(1);
   EXPECT_EQ(job.at("state"), "done");
@@ -55,11 +55,11 @@ TEST(History, KeepsEverythingAboutAPrintAcrossARestart) {
 // More jobs than a page holds have ended since: what still waits is told all the same.
 TEST(History, WhatHasNotEndedIsAlwaysToldAndTheRestPageByPage) {
   Workshop shop;
-  shop.foreman_->pause("real", true);
+  shop.job_manager_->pause("real", true);
   shop.drop("real", "waits.stl");
   for (int i = 0; i < 7; ++i) {
     shop.drop("real", "ends.stl");
-    if (i != 3) shop.foreman_->cancel(i + 2);
+    if (i != 3) shop.job_manager_->cancel(i + 2);
   }
   const auto ids = [&](json request) {
     request["verb"] = "jobs.list";
@@ -73,7 +73,7 @@ TEST(History, WhatHasNotEndedIsAlwaysToldAndTheRestPageByPage) {
   EXPECT_EQ(ids({{"limit", 2}, {"before", 7}}), (Ids{6, 4}));
   EXPECT_EQ(ids({{"limit", 2}, {"before", 4}}), (Ids{3, 2}));
   EXPECT_EQ(ids({{"limit", 2}, {"before", 2}}), Ids{});
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   EXPECT_EQ(ids({{"limit", 2}}), (Ids{5, 1, 8})) << "it ended last";
   const json state = shop.ask({{"verb", "state"}, {"limit", 1}}).at("result").at("jobs");
   EXPECT_EQ(state.size(), 2U);

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/progress_file.h"
+#include "delivery/progress_file.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -39,7 +39,7 @@ TEST(Killed, ADaemonThatIsEndedIsNotCounted) {
   shop.drop("sim", "a.stl");
   for (int ends = 0; ends < 2 * kMost; ++ends) {
     ASSERT_TRUE(shop.prepare_order());
-    shop.foreman_->stop();
+    shop.job_manager_->stop();
     shop.tell(PrepareFailed{1, {Fault::kInterrupted, "Cancelled", ""}});
     EXPECT_EQ(shop.job(1).state, JobState::kReceived);
     shop.start();
@@ -71,7 +71,7 @@ TEST(Killed, APrintOfWhichNothingWasSentWaitsWithItsTries) {
   Workshop shop;
   shop.drop("real", "a.stl");
   shop.prepare(*shop.prepare_order());
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.turn();
   ASSERT_TRUE(shop.send_order("real"));
   SendEnded ended{1, SendOutcome::kNotStarted, {Fault::kUnavailable, "nobody answers", "x"}, ""};
@@ -109,7 +109,7 @@ TEST(Killed, APrintThatWasBeingCancelledDoesNotBegin) {
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order());
   ASSERT_TRUE(shop.send_order("sim"));
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   shop.start();
   EXPECT_EQ(shop.job(1).state, JobState::kCancelled);
   EXPECT_FALSE(shop.send_order("sim"));
@@ -122,7 +122,7 @@ TEST(Killed, AnOrderToPrintAtOnceIsNotKept) {
   JobRecord job = shop.job(1);
   job.at_once = true;
   shop.store_->save(job);
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.turn();
   ASSERT_TRUE(shop.send_order("real"));
   shop.start();

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "daemon/progress_file.h"
+#include "delivery/progress_file.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -18,7 +18,7 @@ class RandomLife {
       step();
       check_files();
       shop_.now_s_ += 20;
-      shop_.foreman_->advance(shop_.now_s_);
+      shop_.job_manager_->advance(shop_.now_s_);
       take_orders();
     }
   }
@@ -34,9 +34,9 @@ class RandomLife {
       case 3:
         return end_sending();
       case 4:
-        return shop_.run_the_clerk();
+        return shop_.run_the_folder_worker();
       case 5:
-        return shop_.foreman_->pause(any_printer(), random_.below(3) == 0), void();
+        return shop_.job_manager_->pause(any_printer(), random_.below(3) == 0), void();
       case 6:
         return clear();
       case 7:
@@ -187,7 +187,7 @@ class RandomLife {
   std::set<std::pair<std::int64_t, int>> printed_;
 };
 
-TEST(Foreman, HoldsItsPromisesThroughRandomLives) {
+TEST(JobManager, HoldsItsPromisesThroughRandomLives) {
   EXPECT_TRUE(rc::check("no file lost, no tray twice, no print on an unclear bed",
                         [](std::uint32_t seed) { RandomLife(seed).run(35); }));
 }

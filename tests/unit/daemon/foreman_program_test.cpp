@@ -61,11 +61,11 @@ TEST(Programs, WaitForApprovalAndAClearBedAsAllJobsDo) {
   shop.drop("real", "a.gcode");
   shop.tell(checked(1));
   EXPECT_EQ(shop.view(1).at("waits_for"), "approval");
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.view(1).at("waits_for"), "clear_bed");
-  shop.foreman_->clear("real");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->clear("real");
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_TRUE(shop.send_order("real"));
 }
 
@@ -75,8 +75,8 @@ TEST(Programs, WithADoubtAskEvenWherePrintersDoNot) {
   shop.tell(checked(1, "Line 3 goes to X 500"));
   EXPECT_EQ(shop.view(1).at("waits_for"), "approval");
   EXPECT_THAT(shop.view(1).at("status").get<std::string>(), testing::HasSubstr("goes to X 500"));
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_TRUE(shop.send_order("sim"));
 }
 
@@ -84,17 +84,17 @@ TEST(Programs, SentToBePrintedAtOnceNeedNoFurtherApproval) {
   Workshop shop;
   shop.config_.printers[2].approve = Approve::kAsk;
   const JobRecord job =
-      shop.foreman_->uploaded({"sim", "../a.gcode", upload_of(shop, "G28\n"), true});
+      shop.job_manager_->uploaded({"sim", "../a.gcode", upload_of(shop, "G28\n"), true});
   EXPECT_EQ(job.name, "a.gcode");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->advance(shop.now_s_);
   shop.start();  // the wish survives a restart
   shop.check_order();
   shop.tell(checked(job.id));
   EXPECT_TRUE(shop.send_order("sim"));
 
   const JobRecord doubtful =
-      shop.foreman_->uploaded({"sim", "b.gcode", upload_of(shop, "G29\n"), true});
-  shop.foreman_->advance(shop.now_s_);
+      shop.job_manager_->uploaded({"sim", "b.gcode", upload_of(shop, "G29\n"), true});
+  shop.job_manager_->advance(shop.now_s_);
   shop.tell(checked(doubtful.id, "a doubt"));
   EXPECT_EQ(shop.view(doubtful.id).at("waits_for"), "approval");
 }
@@ -103,7 +103,7 @@ TEST(Programs, AreRefusedAtTheDoorWhereThePrinterTakesNone) {
   Workshop shop;
   const fs::path file = upload_of(shop, "G28\n");
   const auto fault = [&](const std::string& printer, const std::string& name) {
-    return fault_of([&] { shop.foreman_->uploaded({printer, name, file}); });
+    return fault_of([&] { shop.job_manager_->uploaded({printer, name, file}); });
   };
   EXPECT_EQ(fault("hand", "a.gcode"), Fault::kBadInput);
   EXPECT_EQ(fault("sim", "a.x3g"), Fault::kBadInput);
@@ -134,10 +134,10 @@ TEST(Programs, AgainSendsTheStoredProgram) {
   shop.tell(checked(1));
   shop.send_order("sim");
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
-  shop.run_the_clerk();
-  const JobRecord again = shop.foreman_->again(1);
+  shop.run_the_folder_worker();
+  const JobRecord again = shop.job_manager_->again(1);
   EXPECT_EQ(again.variant, "program");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.send_order("sim")->folder, order.out);
 }
 

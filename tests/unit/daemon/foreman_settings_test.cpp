@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/model_options.h"
+#include "daemon/settings/model_options.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
@@ -32,7 +32,7 @@ TEST(Settings, BesideAModelAreObeyedAndFiledWithIt) {
   std::ofstream(order.out / "preview.png") << "picture";
   shop.send_order("sim");
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   const fs::path done = file.parent_path() / "done";
   EXPECT_EQ(read_file(done / "a.stl.toml", 100), "scale = 2.5\ncopies = 4\n");
   EXPECT_EQ(read_file(done / "a.stl.preview.png", 100), "picture");
@@ -45,8 +45,8 @@ TEST(Settings, WithAMistakeFailTheJobWithTheReasonBesideBoth) {
   const fs::path file = shop.drop("sim", "a.stl");
   EXPECT_FALSE(shop.prepare_order());
   EXPECT_EQ(shop.job(1).state, JobState::kFailed);
-  shop.foreman_->advance(shop.now_s_);
-  shop.run_the_clerk();
+  shop.job_manager_->advance(shop.now_s_);
+  shop.run_the_folder_worker();
   const fs::path failed = file.parent_path() / "failed";
   EXPECT_TRUE(fs::exists(failed / "a.stl"));
   EXPECT_TRUE(fs::exists(failed / "a.stl.toml"));
@@ -55,8 +55,8 @@ TEST(Settings, WithAMistakeFailTheJobWithTheReasonBesideBoth) {
   EXPECT_FALSE(fs::exists(failed / "a.stl.preview.png"));
 
   std::ofstream(failed / "a.stl.toml") << "scale = 2\n";  // mended, and tried again
-  shop.foreman_->again(1);
-  shop.run_the_clerk();
+  shop.job_manager_->again(1);
+  shop.run_the_folder_worker();
   EXPECT_THAT(shop.prepare_order()->argv, Contains("--scale"));
   EXPECT_TRUE(fs::exists(failed / "a.stl.toml")) << "the filed one stays";
 }
@@ -66,8 +66,8 @@ TEST(Settings, OfASecondModelOfTheSameNameGetItsNumber) {
   for (int i = 0; i < 2; ++i) {
     settings(shop, "a.stl.toml", "nonsense" + std::to_string(i));
     shop.drop("sim", "a.stl");
-    shop.foreman_->advance(shop.now_s_);
-    shop.run_the_clerk();
+    shop.job_manager_->advance(shop.now_s_);
+    shop.run_the_folder_worker();
   }
   const fs::path failed = shop.config_.printer("sim")->folder / "failed";
   EXPECT_EQ(read_file(failed / "a.stl.toml", 100), "nonsense0");
@@ -107,8 +107,8 @@ TEST(Settings, OfAFolderDoNotCountForAnUpload) {
   const fs::path file = shop.config_.state / "uploads" / "1";
   fs::create_directories(file.parent_path());
   std::ofstream(file) << "model";
-  shop.foreman_->uploaded({"sim", "a.stl", file});
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->uploaded({"sim", "a.stl", file});
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_THAT(shop.prepare_order()->argv, testing::Not(Contains("--copies")));
   EXPECT_TRUE(fs::exists(shop.config_.printer("sim")->folder / "a.stl.toml"));
 }

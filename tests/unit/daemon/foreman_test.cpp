@@ -1,13 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/progress_file.h"
+#include "delivery/progress_file.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {
 namespace {
 
-TEST(Foreman, AModelOnASimulatedPrinterGoesAllTheWay) {
+TEST(JobManager, AModelOnASimulatedPrinterGoesAllTheWay) {
   Workshop shop;
   const fs::path file = shop.drop("sim", "bunny.stl");
   EXPECT_FALSE(fs::exists(file));
@@ -22,7 +22,7 @@ TEST(Foreman, AModelOnASimulatedPrinterGoesAllTheWay) {
   shop.tell(progress_of(1, PrintState::kPrinting, "T 200"));
   EXPECT_EQ(shop.view(1).at("status"), "printing 50 %, T 200");
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   EXPECT_EQ(shop.job(1).state, JobState::kDone);
   EXPECT_TRUE(fs::exists(file.parent_path() / "done/bunny.stl"));
   const json note =
@@ -33,47 +33,47 @@ TEST(Foreman, AModelOnASimulatedPrinterGoesAllTheWay) {
   EXPECT_TRUE(shop.store_->open_jobs().empty());
 }
 
-TEST(Foreman, ARealBedIsAskedForBeforeEveryTray) {
+TEST(JobManager, ARealBedIsAskedForBeforeEveryTray) {
   Workshop shop;
   shop.drop("real", "a.stl");
   shop.prepare(*shop.prepare_order(), 2);
   EXPECT_FALSE(shop.send_order("real")) << "an unknown bed is not clear";
   EXPECT_EQ(shop.view(1).at("waits_for"), "clear_bed");
   shop.ask({{"verb", "printers.clear"}, {"name", "real"}});
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.send_order("real")->tray, 1);
   EXPECT_FALSE(shop.ask({{"verb", "printers.clear"}, {"name", "real"}}).at("ok")) << "it prints";
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
   EXPECT_FALSE(shop.send_order("real"));
   EXPECT_EQ(shop.view(1).at("waits_for"), "clear_bed");
-  shop.foreman_->clear("real");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->clear("real");
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.send_order("real")->tray, 2);
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
   EXPECT_EQ(shop.job(1).state, JobState::kDone);
   EXPECT_FALSE(shop.store_->printer("real").bed_clear);
 }
 
-TEST(Foreman, WhatDoesNotPayAndWhereAskingIsWantedWaitsForApproval) {
+TEST(JobManager, WhatDoesNotPayAndWhereAskingIsWantedWaitsForApproval) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order(), 1, false);
   EXPECT_EQ(shop.view(1).at("waits_for"), "approval");
   EXPECT_FALSE(shop.send_order("sim"));
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_TRUE(shop.send_order("sim"));
   shop.drop("hand", "b.stl");
   shop.prepare(*shop.prepare_order());
   EXPECT_EQ(shop.view(2).at("waits_for"), "approval") << "approve = ask";
-  shop.foreman_->approve(2);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(2);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.send_order("hand")->handoff_name, "b-2");
   shop.tell(SendEnded{2, SendOutcome::kDone, {}, "handed over in /x"});
   EXPECT_EQ(shop.job(2).state, JobState::kHandedOver);
 }
 
-TEST(Foreman, AHandOverFoldersNameCanBeHeldByEverySystem) {
+TEST(JobManager, AHandOverFoldersNameCanBeHeldByEverySystem) {
   Workshop shop;
   const std::string longest = std::string(199, 'x') + "\u00FC.stl";
   std::int64_t id = 0;
@@ -81,8 +81,8 @@ TEST(Foreman, AHandOverFoldersNameCanBeHeldByEverySystem) {
        {std::string("a:b?\u202Ec.stl"), std::string("CON.v2.stl"), longest}) {
     shop.drop("hand", model);
     shop.prepare(*shop.prepare_order());
-    shop.foreman_->approve(++id);
-    shop.foreman_->advance(shop.now_s_);
+    shop.job_manager_->approve(++id);
+    shop.job_manager_->advance(shop.now_s_);
     const std::string name = shop.send_order("hand")->handoff_name;
     const std::string number = "-" + std::to_string(id);
     EXPECT_EQ(name, id == 1 ? "a_b__c-1" : id == 2 ? "_CON.v2-2" : std::string(148, 'x') + number);
@@ -90,66 +90,66 @@ TEST(Foreman, AHandOverFoldersNameCanBeHeldByEverySystem) {
   }
 }
 
-TEST(Foreman, HeldPausedAndDisconnectedJobsWait) {
+TEST(JobManager, HeldPausedAndDisconnectedJobsWait) {
   Workshop shop;
   shop.drop("sim", "a.stl");
-  shop.foreman_->hold(1);
+  shop.job_manager_->hold(1);
   shop.prepare(*shop.prepare_order());
   EXPECT_EQ(shop.view(1).at("waits_for"), "hold");
-  shop.foreman_->pause("sim", true);
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->pause("sim", true);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.view(1).at("waits_for"), "paused");
   shop.config_.printers[2].port = "/nonexistent";
-  shop.foreman_->pause("sim", false);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->pause("sim", false);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.view(1).at("waits_for"), "not_connected");
   EXPECT_FALSE(shop.send_order("sim"));
 }
 
-TEST(Foreman, AFailureKeepsTheFileWithItsReason) {
+TEST(JobManager, AFailureKeepsTheFileWithItsReason) {
   Workshop shop;
   const fs::path file = shop.drop("sim", "a.stl");
   shop.tell(PrepareFailed{1, {Fault::kBadInput, "The model is not closed", "Repair it."}});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   const fs::path failed = file.parent_path() / "failed";
   EXPECT_TRUE(fs::exists(failed / "a.stl"));
   EXPECT_THAT(read_file(failed / "a.stl.reason.txt", 1000),
               testing::HasSubstr("The model is not closed\nRepair it."));
   shop.drop("sim", "a.stl");
   shop.tell(PrepareFailed{2, {Fault::kBadInput, "again", "x"}});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   EXPECT_TRUE(fs::exists(failed / "a (2).stl.reason.txt")) << "the same name gets a number";
   EXPECT_TRUE(fs::exists(failed / "a (2).stl"));
 }
 
-TEST(Foreman, CancellingReachesWhoeverHasTheJob) {
+TEST(JobManager, CancellingReachesWhoeverHasTheJob) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   const PrepareOrder order = shop.prepare_order().value();
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   EXPECT_TRUE(*order.cancel);
   EXPECT_EQ(shop.job(1).state, JobState::kCancelled);
-  shop.foreman_->advance(shop.now_s_);
-  EXPECT_FALSE(shop.clerk_order()) << "the child may still read the file";
+  shop.job_manager_->advance(shop.now_s_);
+  EXPECT_FALSE(shop.folder_order()) << "the child may still read the file";
   shop.prepare(order);  // it was too late for the child
   EXPECT_EQ(shop.job(1).state, JobState::kCancelled);
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   EXPECT_TRUE(shop.job(1).filing_done);
 
   shop.drop("sim", "b.stl");
   shop.prepare(*shop.prepare_order());
   const SendOrder send = shop.send_order("sim").value();
-  shop.foreman_->cancel(2);
+  shop.job_manager_->cancel(2);
   EXPECT_TRUE(send.control->cancelled());
   EXPECT_EQ(shop.job(2).state, JobState::kSending) << "until the printer has stopped";
   shop.tell(SendEnded{2, SendOutcome::kCancelled, {Fault::kInterrupted, "x", ""}, ""});
   EXPECT_EQ(shop.job(2).state, JobState::kCancelled);
 }
 
-TEST(Foreman, APrinterThatIsNotThereIsTriedAgainOnTheSameClearBed) {
+TEST(JobManager, APrinterThatIsNotThereIsTriedAgainOnTheSameClearBed) {
   Workshop shop;
-  shop.foreman_->clear("real");
+  shop.job_manager_->clear("real");
   shop.drop("real", "a.stl");
   shop.prepare(*shop.prepare_order());
   for (int attempt = 0; attempt < 3; ++attempt) {
@@ -158,17 +158,17 @@ TEST(Foreman, APrinterThatIsNotThereIsTriedAgainOnTheSameClearBed) {
     EXPECT_EQ(shop.job(1).state, JobState::kApproved);
     EXPECT_FALSE(shop.send_order("real"));
     shop.now_s_ += 200;
-    shop.foreman_->advance(shop.now_s_);
+    shop.job_manager_->advance(shop.now_s_);
   }
 }
 
 // The printer had done the tray before it heard of the cancel.
-TEST(Foreman, ACancelInATraysLastMomentPrintsNoFurtherTray) {
+TEST(JobManager, ACancelInATraysLastMomentPrintsNoFurtherTray) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order(), 2);
   ASSERT_TRUE(shop.send_order("sim"));
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
   EXPECT_EQ(shop.job(1).state, JobState::kCancelled);
   EXPECT_EQ(shop.job(1).reason, "cancelled: tray 1 is printed, and no further one");
@@ -177,12 +177,12 @@ TEST(Foreman, ACancelInATraysLastMomentPrintsNoFurtherTray) {
   shop.drop("sim", "b.stl");
   shop.prepare(*shop.prepare_order());
   ASSERT_TRUE(shop.send_order("sim"));
-  shop.foreman_->cancel(2);
+  shop.job_manager_->cancel(2);
   shop.tell(SendEnded{2, SendOutcome::kDone, {}, ""});
   EXPECT_EQ(shop.job(2).state, JobState::kDone) << "all of it was printed";
 }
 
-TEST(Foreman, AgainUsesTheStoredProgramOrTheFiledModel) {
+TEST(JobManager, AgainUsesTheStoredProgramOrTheFiledModel) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   const PrepareOrder prepare = shop.prepare_order().value();
@@ -190,24 +190,24 @@ TEST(Foreman, AgainUsesTheStoredProgramOrTheFiledModel) {
   shop.send_order("sim");
   shop.tell(SendEnded{1, SendOutcome::kDone, {}, ""});
   EXPECT_FALSE(shop.ask({{"verb", "jobs.again"}, {"id", 99}}).at("ok"));
-  const JobRecord again = shop.foreman_->again(1);
-  shop.foreman_->advance(shop.now_s_);
+  const JobRecord again = shop.job_manager_->again(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.send_order("sim")->folder, prepare.out);
   shop.tell(SendEnded{again.id, SendOutcome::kDone, {}, ""});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   EXPECT_TRUE(shop.store_->open_jobs().empty());
 
   const fs::path file = shop.drop("sim", "b.stl");
   shop.prepare_order();
   shop.tell(PrepareFailed{3, {Fault::kBadInput, "bad", "x"}});
-  shop.run_the_clerk();
-  shop.foreman_->again(3);
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
+  shop.job_manager_->again(3);
+  shop.run_the_folder_worker();
   EXPECT_EQ(shop.prepare_order()->job, 4);
   EXPECT_TRUE(fs::exists(file.parent_path() / "failed/b.stl")) << "the filed one stays";
 }
 
-TEST(Foreman, RestartKnowsWhatWasUnderWay) {
+TEST(JobManager, RestartKnowsWhatWasUnderWay) {
   Workshop shop;
   shop.drop("sim", "prepared.stl");
   shop.prepare(*shop.prepare_order(), 1, false);
@@ -221,8 +221,8 @@ TEST(Foreman, RestartKnowsWhatWasUnderWay) {
   EXPECT_EQ(order.out.filename(), "job-2") << "never into a folder that a dying child may write";
   EXPECT_EQ(shop.job(3).state, JobState::kReceived);
 
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   ProgressFile(shop.send_order("sim").value().told_file).acknowledged(0, 0);
   shop.start();
   EXPECT_EQ(shop.job(1).state, JobState::kFailed);
@@ -230,7 +230,7 @@ TEST(Foreman, RestartKnowsWhatWasUnderWay) {
   EXPECT_FALSE(shop.send_order("sim"));
 }
 
-TEST(Foreman, TheSameBytesAreRecognised) {
+TEST(JobManager, TheSameBytesAreRecognised) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.tell(Hashed{1, "abc"});
@@ -240,17 +240,18 @@ TEST(Foreman, TheSameBytesAreRecognised) {
   EXPECT_EQ(shop.store_->history(2).back().note, "the same bytes as job 1");
 }
 
-TEST(Foreman, StoppingEndsPrintsAndKeepsPreparing) {
+TEST(JobManager, StoppingEndsPrintsAndKeepsPreparing) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order());
   const SendOrder send = shop.send_order("sim").value();
   shop.drop("sim", "b.stl");
   const PrepareOrder prepare = shop.prepare_order().value();
-  shop.foreman_->stop();
+  shop.job_manager_->stop();
   EXPECT_TRUE(send.control->cancelled() && *prepare.cancel);
-  shop.foreman_->handle(PrepareFailed{2, {Fault::kInterrupted, "Interrupted", ""}});
-  shop.foreman_->handle(SendEnded{1, SendOutcome::kCancelled, {Fault::kInterrupted, "x", ""}, ""});
+  shop.job_manager_->handle(PrepareFailed{2, {Fault::kInterrupted, "Interrupted", ""}});
+  shop.job_manager_->handle(
+      SendEnded{1, SendOutcome::kCancelled, {Fault::kInterrupted, "x", ""}, ""});
   EXPECT_EQ(shop.job(1).state, JobState::kFailed);
   EXPECT_EQ(shop.job(1).reason, "the daemon was stopped while printing");
   EXPECT_EQ(shop.job(2).state, JobState::kReceived) << "for the next daemon";
@@ -266,12 +267,12 @@ TEST(Api, AnswersEveryKindOfNonsense) {
         R"({"verb": "jobs.list", "before": 0})", R"({"verb": "jobs.list", "before": "2"})",
         R"({"verb": "jobs.approve", "id": 1})", R"({"verb": "printers.clear"})",
         R"({"verb": "printers.clear", "name": "../x"})", "\xFF\xFE", "{\"verb\": \"\xFF\"}"}) {
-    const json reply = json::parse(answer(*shop.foreman_, shop.keys_, request));
+    const json reply = json::parse(answer(*shop.job_manager_, shop.keys_, request));
     EXPECT_FALSE(reply.at("ok").get<bool>()) << request;
     EXPECT_FALSE(reply.at("error").at("what").get<std::string>().empty()) << request;
   }
-  EXPECT_TRUE(
-      json::parse(answer(*shop.foreman_, shop.keys_, std::string(60000, '['))).contains("error"));
+  EXPECT_TRUE(json::parse(answer(*shop.job_manager_, shop.keys_, std::string(60000, '[')))
+                  .contains("error"));
   EXPECT_EQ(shop.ask({{"verb", "jobs.list"}}).at("result").size(), 1U);
   for (const int before : {1, 2})
     EXPECT_TRUE(shop.ask({{"verb", "jobs.list"}, {"before", before}}).at("result").empty())
@@ -279,7 +280,7 @@ TEST(Api, AnswersEveryKindOfNonsense) {
 }
 
 // What the sender's thread would find at its control.
-TEST(Foreman, ARunningPrintIsPausedAndGoesOn) {
+TEST(JobManager, ARunningPrintIsPausedAndGoesOn) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order());
@@ -296,7 +297,7 @@ TEST(Foreman, ARunningPrintIsPausedAndGoesOn) {
   EXPECT_FALSE(send.control->cancelled());
 }
 
-TEST(Foreman, OnlyAQuestionIsAnsweredAndOnlyByItsChoices) {
+TEST(JobManager, OnlyAQuestionIsAnsweredAndOnlyByItsChoices) {
   Workshop shop;
   const auto answer = [&](int choice) {
     return shop.ask({{"verb", "printers.answer"}, {"name", "sim"}, {"choice", choice}});
@@ -316,7 +317,7 @@ TEST(Foreman, OnlyAQuestionIsAnsweredAndOnlyByItsChoices) {
   EXPECT_EQ(send.control->take_answer(), 1);
 }
 
-TEST(Foreman, APrintStoppedAtOnceFails) {
+TEST(JobManager, APrintStoppedAtOnceFails) {
   Workshop shop;
   const json stop = {{"verb", "printers.stop"}, {"name", "sim"}};
   EXPECT_EQ(shop.ask(stop).at("error").at("fault"), 2) << "nothing is printed there";
@@ -331,7 +332,7 @@ TEST(Foreman, APrintStoppedAtOnceFails) {
 }
 
 // Its sender wrote down what the printer acknowledged.
-TEST(Foreman, AfterAKillTheRecordSaysHowFarThePrinterWasTold) {
+TEST(JobManager, AfterAKillTheRecordSaysHowFarThePrinterWasTold) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order());

@@ -31,7 +31,7 @@ class TroubleTest : public testing::Test {
   void fail(const std::string& why) {
     ASSERT_TRUE(shop_.send_order("sim"));
     shop_.tell(not_started(why));
-    shop_.foreman_->advance(shop_.now_s_ += 1000);
+    shop_.job_manager_->advance(shop_.now_s_ += 1000);
   }
 
   Workshop shop_;
@@ -57,7 +57,7 @@ TEST_F(TroubleTest, IsSeenWithTheJobWhileItWaits) {
   ASSERT_TRUE(shop_.send_order("sim"));
   shop_.tell(not_started("nobody answers"));
   EXPECT_EQ(shop_.view(1).at("status"), "waits to be sent (nobody answers)");
-  shop_.foreman_->cancel(1);
+  shop_.job_manager_->cancel(1);
   EXPECT_EQ(shop_.view(1).at("status"), "cancelled") << "nothing of it once the job ended";
 }
 
@@ -74,7 +74,7 @@ TEST_F(TroubleTest, IsOneLineOfHistoryAndOneNoticeHoweverOftenItIsTried) {
   for (int i = 0; i < 5; ++i) fail(i % 2 == 0 ? "nobody answers" : "another printer is there");
   EXPECT_EQ(notices, 2) << "each reason once, though they take turns";
   const auto restart = [&] {  // while it is tried
-    shop_.foreman_->stop();
+    shop_.job_manager_->stop();
     shop_.send_order("sim");
     shop_.tell(not_started("Cancelled"));
     shop_.start();
@@ -118,8 +118,8 @@ TEST_F(TroubleTest, IsSeenWithItsPrinterAsThatOfItsFoldersIs) {
   EXPECT_EQ(at(1).at("trouble"), nullptr);
   shop_.drop("hand", "b.stl");
   shop_.prepare(shop_.prepare_order().value());
-  shop_.foreman_->approve(2);
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->approve(2);
+  shop_.job_manager_->advance(shop_.now_s_);
   ASSERT_TRUE(shop_.send_order("hand"));
   SendEnded ended = not_started("share/ is no folder that can be written to");
   ended.job = 2;
@@ -135,7 +135,7 @@ TEST_F(TroubleTest, OfAFolderThatIsThePrintersNoMoreIsNotTaken) {
   const Trouble trouble{"its folder is not there", 5, 3, 9};
   shop_.tell(FolderTold{"sim", shop_.config_.printer("real")->folder, trouble, 0});
   shop_.tell(FolderTold{"gone", shop_.config_.printer("sim")->folder, trouble, 0});
-  EXPECT_TRUE(shop_.foreman_->troubles_at(*shop_.config_.printer("sim")).empty());
+  EXPECT_TRUE(shop_.job_manager_->troubles_at(*shop_.config_.printer("sim")).empty());
 }
 
 TEST_F(TroubleTest, TellsWhenItIsTriedNext) {
@@ -143,9 +143,9 @@ TEST_F(TroubleTest, TellsWhenItIsTriedNext) {
   shop_.tell(not_started("nobody answers"));
   const auto next = [&] { return shop_.view(1).at("trouble").at("next_s"); };
   EXPECT_NEAR(next(), wall_clock_s() + 10, 5);
-  shop_.foreman_->hold(1);
+  shop_.job_manager_->hold(1);
   EXPECT_EQ(next(), nullptr) << "nobody tries";
-  shop_.foreman_->cancel(1);
+  shop_.job_manager_->cancel(1);
   EXPECT_EQ(shop_.view(1).at("trouble"), nullptr);
 }
 

@@ -43,8 +43,8 @@ TEST(Variant, AnApprovedJobLosesItsApproval) {
   EXPECT_TRUE(shop.ask(wanted(1, "solid")).at("ok"));
   EXPECT_FALSE(shop.job(1).approved);
   EXPECT_FALSE(shop.job(1).at_once);
-  shop.foreman_->clear("real");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->clear("real");
+  shop.job_manager_->advance(shop.now_s_);
   shop.prepare(*shop.prepare_order(), 1, false);
   EXPECT_EQ(shop.view(1).at("waits_for"), "approval");
   EXPECT_FALSE(shop.send_order("real"));
@@ -60,7 +60,7 @@ TEST(Variant, WhatIsToStartAtOnceDoesNotInAnotherWay) {
   job.at_once = true;
   shop.store_->save(job, "");
   EXPECT_TRUE(shop.ask(wanted(1, "solid")).at("ok"));
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->advance(shop.now_s_);
   shop.prepare(*shop.prepare_order());
   EXPECT_EQ(shop.job(1).state, JobState::kReady);
 }
@@ -87,16 +87,16 @@ TEST(Variant, AnEndedJobBecomesANewOne) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order(), 1, false);
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   EXPECT_EQ(shop.ask(wanted(1, "solid")).at("error").at("fault"), 75) << "it is being filed";
-  shop.foreman_->advance(shop.now_s_);
-  shop.run_the_clerk();
-  shop.foreman_->again(1);
+  shop.job_manager_->advance(shop.now_s_);
+  shop.run_the_folder_worker();
+  shop.job_manager_->again(1);
   const json anew = shop.ask(wanted(2, "solid"));
   ASSERT_TRUE(anew.at("ok")) << anew;
   EXPECT_EQ(anew.at("result").at("id"), 3) << "job 2 has no model itself";
   EXPECT_EQ(shop.job(2).state, JobState::kCancelled);
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   EXPECT_THAT(shop.prepare_order()->argv,
               IsSupersetOf({std::string("solid"), std::string("--compared"), shop.job(1).folder}));
 }
@@ -106,11 +106,11 @@ TEST(Variant, WhatIsHeldStaysHeldInTheNewJob) {
   shop.config_.printers[2].approve = Approve::kAsk;
   shop.drop("sim", "a.stl");
   shop.prepare(*shop.prepare_order(), 1, false);
-  shop.foreman_->cancel(1);
-  shop.foreman_->advance(shop.now_s_);
-  shop.run_the_clerk();
-  shop.foreman_->again(1);
-  shop.foreman_->hold(2);
+  shop.job_manager_->cancel(1);
+  shop.job_manager_->advance(shop.now_s_);
+  shop.run_the_folder_worker();
+  shop.job_manager_->again(1);
+  shop.job_manager_->hold(2);
   EXPECT_TRUE(shop.ask(wanted(2, "solid")).at("ok"));
   EXPECT_TRUE(shop.job(3).held);
 }
@@ -127,7 +127,7 @@ TEST(Variant, WhatKeptTheOldWayFromPrintingIsForgotten) {
   shop.tell(ended);
   EXPECT_TRUE(shop.ask(wanted(1, "solid")).at("ok"));
   EXPECT_EQ(shop.view(1).at("hint"), "");
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->advance(shop.now_s_);
   shop.prepare(*shop.prepare_order());
   EXPECT_TRUE(shop.send_order("sim")) << "at once";
 }
@@ -139,8 +139,8 @@ TEST(Variant, IsRefusedWhereItMakesNoSense) {
   shop.prepare(*shop.prepare_order(), 1, false);
   EXPECT_EQ(shop.ask(wanted(1, "holow")).at("error").at("fault"), 2);
   EXPECT_EQ(shop.ask({{"verb", "jobs.prepare"}, {"id", 1}}).at("error").at("fault"), 2);
-  shop.foreman_->approve(1);
-  shop.foreman_->advance(shop.now_s_);
+  shop.job_manager_->approve(1);
+  shop.job_manager_->advance(shop.now_s_);
   EXPECT_EQ(shop.ask(wanted(1, "hollow")).at("error").at("fault"), 2) << "it is printed";
   shop.drop("sim", "b.gcode");
   EXPECT_EQ(shop.ask(wanted(2, "hollow")).at("error").at("fault"), 2) << "a program";

@@ -35,7 +35,7 @@ TEST(FullDiskTest, IsClearedBeforeAnythingIsRecorded) {
   shop.prepare(order);
   shop.send_order("sim");
   shop.tell(SendEnded{order.job, SendOutcome::kDone, {}, ""});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   JobRecord job = shop.job(order.job);
   job.ended_s -= 100 * 86400.0;
   shop.store_->save(job);
@@ -45,18 +45,18 @@ TEST(FullDiskTest, IsClearedBeforeAnythingIsRecorded) {
   {
     const FullDisk full;
     const Arrived pending{"sim", shop.config_.printer("sim")->folder / "b.stl", false};
-    EXPECT_THROW(shop.foreman_->handle(pending), Error);
-    shop.foreman_->clean(shop.now_s_ += 60);
-    const std::optional<ClerkOrder> wanted = shop.clerk_order();
+    EXPECT_THROW(shop.job_manager_->handle(pending), Error);
+    shop.job_manager_->clean(shop.now_s_ += 60);
+    const std::optional<FolderOrder> wanted = shop.folder_order();
     ASSERT_TRUE(wanted && std::holds_alternative<DeleteOrder>(*wanted));
-    shop.foreman_->handle(clear_away(std::get<DeleteOrder>(*wanted)));
+    shop.job_manager_->handle(clear_away(std::get<DeleteOrder>(*wanted)));
     EXPECT_FALSE(fs::exists(folder));
     EXPECT_EQ(shop.job(job.id).deleted_s, 0) << "there is no room to record it";
     EXPECT_EQ(shop.view(job.id).at("folder"), "") << "but nobody is sent there";
-    shop.foreman_->clean(shop.now_s_ += 60);
-    EXPECT_FALSE(shop.clerk_order()) << "it is not deleted again and again";
+    shop.job_manager_->clean(shop.now_s_ += 60);
+    EXPECT_FALSE(shop.folder_order()) << "it is not deleted again and again";
   }
-  shop.foreman_->clean(shop.now_s_ += 60);
+  shop.job_manager_->clean(shop.now_s_ += 60);
   EXPECT_GT(shop.job(job.id).deleted_s, 0);
   EXPECT_NEAR(shop.store_->remembered("cleaning_looked_s").value(), wall_clock_s(), 3600);
 }
@@ -68,12 +68,12 @@ TEST(FullDiskTest, APauseReachesThePrinterAndAResumeOnlyWhereItIsKept) {
   const SendOrder send = shop.send_order("sim").value();
   {
     const FullDisk full;
-    EXPECT_THROW(shop.foreman_->pause("sim", true), Error);
+    EXPECT_THROW(shop.job_manager_->pause("sim", true), Error);
     EXPECT_EQ(send.control->take_pause_request(), true);
-    EXPECT_THROW(shop.foreman_->pause("sim", false), Error);
+    EXPECT_THROW(shop.job_manager_->pause("sim", false), Error);
     EXPECT_EQ(send.control->take_pause_request(), std::nullopt);
   }
-  shop.foreman_->pause("sim", false);
+  shop.job_manager_->pause("sim", false);
   EXPECT_EQ(send.control->take_pause_request(), false);
 }
 
@@ -81,15 +81,15 @@ TEST(FullDiskTest, AWishIsRecordedOnceThereIsRoom) {
   Workshop shop;
   shop.drop("sim", "a.stl");
   shop.tell(PrepareFailed{1, {Fault::kBadInput, "bad", "x"}});
-  shop.run_the_clerk();
+  shop.run_the_folder_worker();
   {
     const FullDisk full;
-    EXPECT_NO_THROW(shop.foreman_->remove(1)) << "to delete is what helps";
+    EXPECT_NO_THROW(shop.job_manager_->remove(1)) << "to delete is what helps";
     EXPECT_FALSE(shop.job(1).to_delete);
   }
-  shop.foreman_->clean(shop.now_s_ += 60);
-  EXPECT_FALSE(shop.job(1).to_delete) << "the clerk is at it";
-  shop.run_the_clerk();
+  shop.job_manager_->clean(shop.now_s_ += 60);
+  EXPECT_FALSE(shop.job(1).to_delete) << "the folder_worker is at it";
+  shop.run_the_folder_worker();
   EXPECT_GT(shop.job(1).deleted_s, 0);
 }
 

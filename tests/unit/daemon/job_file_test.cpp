@@ -1,4 +1,4 @@
-#include "daemon/job_file.h"
+#include "delivery/job_file.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

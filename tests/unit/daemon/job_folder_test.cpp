@@ -1,4 +1,4 @@
-#include "daemon/job_folder.h"
+#include "delivery/job_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "daemon/send.h"
+#include "delivery/send.h"
 #include "fixtures/fault_of.h"
 
 namespace packmerger {

@@ -1,4 +1,4 @@
-#include "daemon/key_ring.h"
+#include "daemon/web/key_ring.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/model_options.h"
+#include "daemon/settings/model_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

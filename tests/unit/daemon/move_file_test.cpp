@@ -1,4 +1,4 @@
-#include "daemon/move_file.h"
+#include "base/move_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "daemon/print_clock.h"
+#include "daemon/workers/print_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/progress_file.h"
+#include "delivery/progress_file.h"
 
 #include <gtest/gtest.h>
 

@@ -20,15 +20,15 @@ class RoomToStart : public testing::Test {
     shop_.drop("sim", "a.stl");
     const PrepareOrder order = shop_.prepare_order().value();
     shop_.prepare(order, 1, false);
-    shop_.foreman_->cancel(order.job);
-    shop_.run_the_clerk();
+    shop_.job_manager_->cancel(order.job);
+    shop_.run_the_folder_worker();
     JobRecord job = shop_.job(order.job);
     job.ended_s -= days_ago * kDay_s;
     shop_.store_->save(job);
   }
   fs::path folder(int id) { return shop_.config_.state / "jobs" / std::to_string(id); }
   void end() {
-    shop_.foreman_.reset();
+    shop_.job_manager_.reset();
     shop_.store_.reset();
   }
   Deleted make_room(const std::function<bool()>& has_room) {

@@ -18,9 +18,9 @@
 #include <thread>
 
 #include "base/files.h"
-#include "base/process.h"
-#include "daemon/client.h"
+#include "base/process/process.h"
 #include "firmware_io/simulated/simulator.h"
+#include "local/client.h"
 #include "model/printer.h"
 
 namespace packmerger {
@@ -151,7 +151,7 @@ class RunningDaemon : public testing::Test {
   // A model written under a temporary name; a binary STL of one triangle.
   void drop(const std::string& printer, const std::string& name) {
     const fs::path target = path("state/folders") / printer / name;
-    fs::create_directories(target.parent_path());  // its clerk does so too, a moment later
+    fs::create_directories(target.parent_path());  // its folder worker does so too, a moment later
     std::string bytes(134, '\0');
     bytes[80] = 1;
     bytes.replace(0, name.size(), name);

@@ -6,10 +6,10 @@
 #include <atomic>
 #include <fstream>
 
+#include "base/move_file.h"
 #include "base/sign_of_life.h"
-#include "daemon/clerk.h"
-#include "daemon/move_file.h"
-#include "daemon/pulse.h"
+#include "daemon/intake/folder_actions.h"
+#include "daemon/intake/pulse.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "daemon/socket_server.h"
+#include "daemon/local/socket_server.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

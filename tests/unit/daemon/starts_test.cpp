@@ -37,7 +37,7 @@ class Starts : public testing::Test {
       return told_.at("job");
     }
     EXPECT_EQ(reply.at("result").value("starts", json()), nullptr);
-    shop_.foreman_->advance(shop_.now_s_);
+    shop_.job_manager_->advance(shop_.now_s_);
     return 0;
   }
   // Whether it really does.
@@ -45,7 +45,7 @@ class Starts : public testing::Test {
     request["starts"] = expected;
     const json reply = shop_.ask(request);
     EXPECT_TRUE(reply.at("ok")) << reply;
-    shop_.foreman_->advance(shop_.now_s_);
+    shop_.job_manager_->advance(shop_.now_s_);
     const auto order = shop_.send_order(printer);
     const std::int64_t started = order ? order->job : 0;
     EXPECT_EQ(reply.at("result").at("starts").value("job", std::int64_t{0}), started);
@@ -68,7 +68,7 @@ TEST_F(Starts, AClearBedStartsTheJobThatWaitsForIt) {
 
 TEST_F(Starts, AnotherJobThanTheOneThatWasAskedAboutIsToldAnew) {
   ready("real");
-  shop_.foreman_->cancel(1);
+  shop_.job_manager_->cancel(1);
   json request = at("clear", "real");
   request["starts"] = 1;
   EXPECT_EQ(shop_.ask(request).at("error").at("starts").at("job"), 2);
@@ -87,7 +87,7 @@ TEST_F(Starts, NothingStartsWhileSomethingElseIsWaitedFor) {
 }
 
 TEST_F(Starts, ResumingStartsWhatIsApproved) {
-  shop_.foreman_->pause("real", true);
+  shop_.job_manager_->pause("real", true);
   EXPECT_EQ(starts(at("clear", "real")), 0);
   EXPECT_EQ(starts(at("resume", "real")), 1);
   EXPECT_EQ(does_start(at("resume", "real"), "real", 1), 1);
@@ -106,7 +106,7 @@ TEST_F(Starts, ApprovingStartsWhereTheBedIsClear) {
 
 TEST_F(Starts, AgainStartsWhatWasApprovedAndNothingElse) {
   ready("sim", 1, false);
-  shop_.foreman_->cancel(2);
+  shop_.job_manager_->cancel(2);
   EXPECT_EQ(starts(of_job("again", 2)), 0) << "it waits for approval";
   EXPECT_EQ(does_start(of_job("approve", 3), "sim", 3), 3);
   end(3);
@@ -118,19 +118,19 @@ TEST_F(Starts, AgainStartsWhatWasApprovedAndNothingElse) {
 TEST_F(Starts, WhatWasPutFirstStartsFirst) {
   ready("real");
   ready("real");
-  shop_.foreman_->put_first(3);
+  shop_.job_manager_->put_first(3);
   EXPECT_EQ(starts(at("clear", "real")), 3);
   EXPECT_EQ(does_start(at("clear", "real"), "real", 3), 3);
 }
 
 TEST_F(Starts, LaterTraysGoBeforeOtherJobs) {
-  shop_.foreman_->cancel(1);
+  shop_.job_manager_->cancel(1);
   ready("real");
   ready("real", 2);
-  shop_.foreman_->hold(2);
+  shop_.job_manager_->hold(2);
   EXPECT_EQ(does_start(at("clear", "real"), "real", 3), 3);
   end(3);
-  shop_.foreman_->approve(2);
+  shop_.job_manager_->approve(2);
   EXPECT_EQ(starts(at("clear", "real")), 3);
   EXPECT_EQ(told_.at("tray"), 2);
   EXPECT_EQ(told_.at("trays"), 2);

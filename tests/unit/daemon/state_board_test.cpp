@@ -3,7 +3,7 @@
 #include <rapidcheck/gtest.h>
 #include <sqlite3.h>
 
-#include "daemon/state_board.h"
+#include "daemon/views/state_board.h"
 #include "workshop.h"
 
 namespace packmerger {
@@ -98,14 +98,15 @@ void happen(Workshop& shop, int what, std::int64_t job) {
       at_printer("printers.resume");
       break;
     case 10:
-      shop.run_the_clerk();
+      shop.run_the_folder_worker();
       break;
     case 11:
       shop.tell(FolderTold{"real", shop.config_.printer("real")->folder,
                            job % 2 == 0 ? std::optional(trouble) : std::nullopt, 1});
       break;
     case 13:
-      shop.foreman_->note_troubles("test", job % 2 == 0 ? Troubles{{"all", trouble}} : Troubles{});
+      shop.job_manager_->note_troubles("test",
+                                       job % 2 == 0 ? Troubles{{"all", trouble}} : Troubles{});
       break;
     case 12:
       ask("jobs.delete");
@@ -121,7 +122,7 @@ void happen(Workshop& shop, int what, std::int64_t job) {
 
 RC_GTEST_PROP(StateBoard, ChangesLeadToTheWholeState, ()) {
   Workshop shop;
-  StateBoard board(*shop.foreman_);
+  StateBoard board(*shop.job_manager_);
   Page page;
   const auto steps =
       *rc::gen::scale(0.2, rc::gen::container<std::vector<std::pair<int, int>>>(
@@ -129,7 +130,7 @@ RC_GTEST_PROP(StateBoard, ChangesLeadToTheWholeState, ()) {
   for (const auto& [what, job] : steps) {
     happen(shop, what, job);
     page.take(board.look());
-    const std::string told = answer(*shop.foreman_, shop.keys_, R"({"verb": "state"})");
+    const std::string told = answer(*shop.job_manager_, shop.keys_, R"({"verb": "state"})");
     RC_ASSERT(board.state() == told);
     RC_ASSERT(page.state() == json::parse(told).at("result"));
     RC_ASSERT(board.look().empty());
@@ -138,7 +139,7 @@ RC_GTEST_PROP(StateBoard, ChangesLeadToTheWholeState, ()) {
 
 TEST(StateBoard, AJobThatDidNotChangeIsNotToldAgain) {
   Workshop shop;
-  StateBoard board(*shop.foreman_);
+  StateBoard board(*shop.job_manager_);
   for (int i = 0; i < 20; ++i) shop.drop("sim", "m" + std::to_string(i) + ".stl");
   board.look();
   shop.tell(PrepareProgress{1, "packing", 0.25});
@@ -148,9 +149,9 @@ TEST(StateBoard, AJobThatDidNotChangeIsNotToldAgain) {
 
 TEST(StateBoard, NothingIsAskedOfTheDatabaseWhereNothingChanged) {
   Workshop shop;
-  StateBoard board(*shop.foreman_);
+  StateBoard board(*shop.job_manager_);
   for (int i = 0; i < 3; ++i) shop.drop("real", "m" + std::to_string(i) + ".stl");
-  shop.foreman_->cancel(3);
+  shop.job_manager_->cancel(3);
   board.look();
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open((shop.config_.state / "jobs.sqlite").c_str(), &other), SQLITE_OK);
@@ -158,18 +159,18 @@ TEST(StateBoard, NothingIsAskedOfTheDatabaseWhereNothingChanged) {
             SQLITE_OK);
   sqlite3_close(other);
   EXPECT_THROW(shop.store_->find(1), Error);
-  shop.foreman_->handle(PrepareProgress{1, "packing", 0.25});
+  shop.job_manager_->handle(PrepareProgress{1, "packing", 0.25});
   EXPECT_NE(board.look(), "");
   EXPECT_NE(board.state(), "");
 }
 
 TEST(StateBoard, WhatLeavesTheListIsGone) {
   Workshop shop;
-  StateBoard board(*shop.foreman_);
+  StateBoard board(*shop.job_manager_);
   for (std::size_t i = 0; i <= kLastEnded; ++i) shop.drop("real", "m" + std::to_string(i) + ".stl");
   board.look();
   for (std::size_t i = 0; i <= kLastEnded; ++i)
-    shop.foreman_->cancel(static_cast<std::int64_t>(i + 1));
+    shop.job_manager_->cancel(static_cast<std::int64_t>(i + 1));
   EXPECT_EQ(json::parse(board.look()).at("gone"), json::parse(R"({"jobs": [1]})"));
 }
 

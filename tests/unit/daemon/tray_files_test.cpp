@@ -4,9 +4,9 @@
 
 #include <cstdlib>
 
-#include "daemon/job_folder.h"
-#include "daemon/send.h"
-#include "daemon/worker.h"
+#include "daemon/workers/worker.h"
+#include "delivery/job_folder.h"
+#include "delivery/send.h"
 #include "fixtures/fault_of.h"
 #include "unit/daemon/workshop.h"
 
@@ -129,8 +129,8 @@ class HashedJob : public testing::Test {
   }
 
   void clear() {
-    shop_.foreman_->clear("real");
-    shop_.foreman_->advance(shop_.now_s_);
+    shop_.job_manager_->clear("real");
+    shop_.job_manager_->advance(shop_.now_s_);
   }
 
   // Runs the printer's sender on its order; how that ended. Its port is no serial port: what is let
@@ -175,18 +175,18 @@ TEST_F(HashedJob, FailsWhereItsProgramWasChangedAndTheBedStaysClear) {
   EXPECT_THAT(job.hint, HasSubstr("drop its file again"));
   EXPECT_EQ(job.told_total, 0);
   EXPECT_TRUE(shop_.store_->printer("real").bed_clear) << "nothing was printed";
-  shop_.run_the_clerk();
+  shop_.run_the_folder_worker();
   EXPECT_TRUE(fs::exists(shop_.config_.printer("real")->folder / "failed/a.stl"));
 
-  shop_.foreman_->again(1);
+  shop_.job_manager_->again(1);
   EXPECT_EQ(shop_.job(2).tray_files, shop_.job(1).tray_files);
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->advance(shop_.now_s_);
   EXPECT_EQ(send(), SendOutcome::kFailed) << "the stored program is the changed one";
   EXPECT_EQ(shop_.job(2).state, JobState::kFailed);
 
   write(out_ / "program.gcode", "G28 ; program.gcode\n");
-  shop_.foreman_->again(2);
-  shop_.foreman_->advance(shop_.now_s_);
+  shop_.job_manager_->again(2);
+  shop_.job_manager_->advance(shop_.now_s_);
   EXPECT_EQ(send(), SendOutcome::kNotStarted) << "put back from a backup";
 }
 

@@ -1,4 +1,4 @@
-#include "daemon/watch_folder.h"
+#include "daemon/intake/watch_folder.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/whole_file.h"
+#include "daemon/intake/whole_file.h"
 
 namespace packmerger {
 namespace {

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "base/files.h"
-#include "daemon/web_events.h"
-#include "daemon/web_guard.h"
-#include "daemon/web_routes.h"
+#include "daemon/web/web_events.h"
+#include "daemon/web/web_guard.h"
+#include "daemon/web/web_routes.h"
 
 namespace packmerger {
 namespace {

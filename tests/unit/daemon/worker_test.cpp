@@ -1,4 +1,4 @@
-#include "daemon/worker.h"
+#include "daemon/workers/worker.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

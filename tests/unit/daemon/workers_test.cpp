@@ -1,5 +1,5 @@
 // Several models are prepared at the same time.
-#include "daemon/workers.h"
+#include "daemon/workers/workers.h"
 
 #include "unit/daemon/running_daemon.h"
 #include "unit/daemon/workshop.h"
@@ -30,7 +30,7 @@ TEST(Workers, AreGivenNoMoreThanTheyBeginAtOnce) {
   EXPECT_EQ(std::pair(first->job, second->job), std::pair(std::int64_t{1}, std::int64_t{2}));
   EXPECT_FALSE(shop.prepare_order());
   EXPECT_NE(first->out.parent_path(), second->out.parent_path()) << "a folder for each child";
-  shop.foreman_->cancel(1);
+  shop.job_manager_->cancel(1);
   EXPECT_TRUE(*first->cancel);
   EXPECT_FALSE(*second->cancel);
   EXPECT_FALSE(shop.prepare_order()) << "its worker still ends it";
@@ -57,7 +57,7 @@ TEST(Workers, BeginWithWhatWasPutFirst) {
   shop.start();  // it outlives the daemon
   EXPECT_EQ(shop.prepare_order().value().job, 3);
   EXPECT_EQ(shop.ask({{"verb", "jobs.first"}, {"id", 9}}).at("error").at("fault"), 66);
-  shop.foreman_->cancel(4);
+  shop.job_manager_->cancel(4);
   EXPECT_EQ(shop.ask({{"verb", "jobs.first"}, {"id", 4}}).at("error").at("fault"), 2) << "it ended";
 }
 

@@ -1,4 +1,4 @@
-// A workshop for tests of the foreman: its store, folders and printers, without any thread or
+// A workshop for tests of the job manager: its store, folders and printers, without any thread or
 // clock.
 #pragma once
 
@@ -9,10 +9,10 @@
 
 #include "base/files.h"
 #include "base/random.h"
-#include "daemon/api.h"
-#include "daemon/clerk.h"
-#include "daemon/foreman.h"
-#include "daemon/model_options.h"
+#include "daemon/intake/folder_actions.h"
+#include "daemon/jobs/job_manager.h"
+#include "daemon/local/api.h"
+#include "daemon/settings/model_options.h"
 
 namespace packmerger {
 
@@ -42,7 +42,8 @@ inline SendProgress progress_of(std::int64_t job, PrintState state, const std::s
   return progress;
 }
 
-// A workshop whose worker, clerk and printers are played by the test, one order after the other.
+// A workshop whose worker, folder worker and printers are played by the test, one order after the
+// other.
 class Workshop {
  public:
   Workshop() {
@@ -62,40 +63,40 @@ class Workshop {
 
   // As after a kill: orders and events that were under way are gone.
   void start() {
-    foreman_.reset();
+    job_manager_.reset();
     store_ = std::make_unique<JobStore>(config_.state / "jobs.sqlite");
-    crew_ = std::make_unique<Crew>(config_);
-    foreman_ = std::make_unique<Foreman>(config_, *store_, *crew_,
-                                         [this](const std::string& line) { log_ += line + "\n"; });
-    foreman_->recover();
+    queues_ = std::make_unique<WorkQueues>(config_);
+    job_manager_ = std::make_unique<JobManager>(
+        config_, *store_, *queues_, [this](const std::string& line) { log_ += line + "\n"; });
+    job_manager_->recover();
     run_claims();
     turn();
   }
 
   // What the loop does again and again.
   void turn() {
-    foreman_->clean(now_s_);
-    foreman_->advance(now_s_);
+    job_manager_->clean(now_s_);
+    job_manager_->advance(now_s_);
   }
 
   fs::path drop(const std::string& name, const std::string& model) {
     const fs::path file = config_.printer(name)->folder / model;
     std::ofstream(file) << "model " << drops_++;
-    foreman_->handle(Arrived{name, file, has_settings_beside(file)});
+    job_manager_->handle(Arrived{name, file, has_settings_beside(file)});
     run_claims();
     turn();
     return file;
   }
 
   void tell(const Event& event) {
-    foreman_->handle(event);
+    job_manager_->handle(event);
     turn();
   }
 
-  std::optional<PrepareOrder> prepare_order() { return crew_->workers.try_pop(); }
-  std::optional<PrepareOrder> check_order() { return crew_->checker.try_pop(); }
+  std::optional<PrepareOrder> prepare_order() { return queues_->workers.try_pop(); }
+  std::optional<PrepareOrder> check_order() { return queues_->checker.try_pop(); }
   std::optional<SendOrder> send_order(const std::string& name) {
-    return crew_->senders.at(name).try_pop();
+    return queues_->senders.at(name).try_pop();
   }
 
   void prepare(const PrepareOrder& order, int trays = 1, bool pays = true) {
@@ -105,9 +106,9 @@ class Workshop {
                   60, "slicer", pays ? "" : "packing does not pay", ""});
   }
 
-  // The clerks' work, really done.
-  void run_the_clerk() {
-    while (const std::optional<ClerkOrder> order = clerk_order()) {
+  // The folder workers' work, really done.
+  void run_the_folder_worker() {
+    while (const std::optional<FolderOrder> order = folder_order()) {
       if (const auto* arrived = std::get_if<ClaimOrder>(&*order)) tell(claim(*arrived));
       if (const auto* distant = std::get_if<FetchOrder>(&*order)) tell(fetch(*distant));
       if (const auto* ended = std::get_if<PlaceOrder>(&*order)) tell(place(*ended));
@@ -118,32 +119,34 @@ class Workshop {
 
   // Of that work only the taking of files that arrived.
   void run_claims() {
-    for (auto& item : crew_->folders) {
-      std::vector<ClerkOrder> others;
-      while (std::optional<ClerkOrder> order = item.second.orders.try_pop())
+    for (auto& item : queues_->folders) {
+      std::vector<FolderOrder> others;
+      while (std::optional<FolderOrder> order = item.second.orders.try_pop())
         if (const auto* arrived = std::get_if<ClaimOrder>(&*order))
-          foreman_->handle(claim(*arrived));
+          job_manager_->handle(claim(*arrived));
         else
           others.push_back(std::move(*order));
-      for (ClerkOrder& other : others) item.second.orders.push(std::move(other));
+      for (FolderOrder& other : others) item.second.orders.push(std::move(other));
     }
   }
 
-  std::optional<ClerkOrder> clerk_order() {
-    for (auto& item : crew_->folders)
-      if (std::optional<ClerkOrder> order = item.second.orders.try_pop()) return order;
+  std::optional<FolderOrder> folder_order() {
+    for (auto& item : queues_->folders)
+      if (std::optional<FolderOrder> order = item.second.orders.try_pop()) return order;
     return std::nullopt;
   }
 
   JobRecord job(std::int64_t id) { return store_->find(id).value(); }
-  json ask(const json& request) { return json::parse(answer(*foreman_, keys_, request.dump())); }
+  json ask(const json& request) {
+    return json::parse(answer(*job_manager_, keys_, request.dump()));
+  }
   json view(std::int64_t id) { return ask({{"verb", "jobs.show"}, {"id", id}}).at("result"); }
 
   TemporaryFolder folder_;
   DaemonConfig config_;
   std::unique_ptr<JobStore> store_;
-  std::unique_ptr<Crew> crew_;
-  std::unique_ptr<Foreman> foreman_;
+  std::unique_ptr<WorkQueues> queues_;
+  std::unique_ptr<JobManager> job_manager_;
   KeyRing keys_{folder_.path() / "keys.json"};
   double now_s_ = 1000;
   int drops_ = 0;

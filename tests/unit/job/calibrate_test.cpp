@@ -1,5 +1,5 @@
 // Prints made from known constants with the estimator itself, and what is found of those constants.
-#include "job/calibrate.h"
+#include "job/calibrate/calibrate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include "base/error.h"
 #include "fixtures/models.h"
 #include "fixtures/profiles.h"
-#include "printers/estimate.h"
-#include "printers/linear_estimate.h"
-#include "printers/packing_cost.h"
+#include "printers/estimate/estimate.h"
+#include "printers/estimate/linear_estimate.h"
+#include "printers/estimate/packing_cost.h"
 
 namespace packmerger {
 namespace {

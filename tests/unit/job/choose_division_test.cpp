@@ -9,7 +9,7 @@
 #include "job/pack_models.h"
 #include "model/printer.h"
 #include "pack/pack.h"
-#include "shape/adjacency.h"
+#include "shape/divide/adjacency.h"
 
 namespace packmerger {
 namespace {

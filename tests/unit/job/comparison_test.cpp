@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "job/advice.h"
-#include "job/comparison_table.h"
+#include "job/compare/advice.h"
+#include "job/compare/comparison_table.h"
 #include "tray/comparison_json.h"
 
 namespace packmerger {

@@ -1,4 +1,4 @@
-#include "job/correction.h"
+#include "job/store/correction.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

@@ -1,5 +1,5 @@
 // What may be deleted is known on a disk that takes not a single byte.
-#include "job/deletable_jobs.h"
+#include "job/store/deletable_jobs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

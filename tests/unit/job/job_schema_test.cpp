@@ -3,7 +3,7 @@
 #include <sqlite3.h>
 
 #include "base/files.h"
-#include "job/job_store.h"
+#include "job/store/job_store.h"
 
 namespace packmerger {
 namespace {

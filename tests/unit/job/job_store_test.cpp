@@ -1,4 +1,4 @@
-#include "job/job_store.h"
+#include "job/store/job_store.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,8 +11,8 @@
 #include "job/prepare.h"
 #include "model/stl.h"
 #include "pack/exact_gap.h"
-#include "shape/read_model.h"
-#include "shape/soup.h"
+#include "shape/read/read_model.h"
+#include "shape/read/soup.h"
 
 namespace packmerger {
 namespace {

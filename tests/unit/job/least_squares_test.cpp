@@ -1,4 +1,4 @@
-#include "job/least_squares.h"
+#include "job/calibrate/least_squares.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

@@ -1,4 +1,4 @@
-#include "job/unpacked.h"
+#include "job/compare/unpacked.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -8,7 +8,7 @@
 
 #include "fixtures/models.h"
 #include "model/printer.h"
-#include "shape/soup.h"
+#include "shape/read/soup.h"
 
 namespace packmerger {
 namespace {

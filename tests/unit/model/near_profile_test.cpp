@@ -1,4 +1,4 @@
-#include "model/near_profile.h"
+#include "model/profile/near_profile.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

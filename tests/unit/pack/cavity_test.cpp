@@ -7,10 +7,10 @@
 #include <rapidcheck/gtest.h>
 
 #include "base/parallel.h"
+#include "pack/disassembly_order.h"
+#include "pack/escape_path.h"
 #include "pack/exact_gap.h"
 #include "pack/pack.h"
-#include "pack/removal_plan.h"
-#include "pack/way_out.h"
 #include "unit/pack/check.h"
 #include "unit/pack/problems.h"
 
@@ -169,11 +169,11 @@ RC_GTEST_PROP(SolidTray, FreeHeightsKeepTheGap, (std::uint64_t seed)) {
 }
 
 // A cup over a ball must be lifted first, and the ball then goes up as well.
-TEST(RemovalPlan, WhatStandsBelowSomethingComesOutAfterIt) {
+TEST(DisassemblyOrder, WhatStandsBelowSomethingComesOutAfterIt) {
   const SolidGrid grid = grid_of(Vec3(60, 60, 60), 1);
   const SolidPart cup = drawn(upside_down(shapes::cup(15, 25, 2)), grid);
   const SolidPart ball = drawn(shapes::sphere(6, 16), grid);
-  const auto plan = removal_plan(grid, {{&ball, 18, 18, 0}, {&cup, 0, 0, 0}});
+  const auto plan = disassembly_order(grid, {{&ball, 18, 18, 0}, {&cup, 0, 0, 0}});
   ASSERT_TRUE(plan);
   EXPECT_EQ(plan->order, (std::vector<int>{1, 0}));
   EXPECT_TRUE(plan->paths[0].empty());
@@ -181,13 +181,13 @@ TEST(RemovalPlan, WhatStandsBelowSomethingComesOutAfterIt) {
 }
 
 // A block in a box leaves it by the window where that is large enough.
-TEST(WayOut, LeadsThroughAWindowThatIsLargeEnough) {
+TEST(EscapePath, LeadsThroughAWindowThatIsLargeEnough) {
   const SolidGrid grid = grid_of(Vec3(80, 60, 60), 0.5);
   const SolidPart block = drawn(shapes::box(Vec3(6, 7, 8)), grid);
   for (const double window : {10.0, 7.5}) {
     const SolidPart house = drawn(box_with_window(window), grid);
     const SolidTray rest(grid, {{&house, 10, 10, 0}});
-    const auto way = way_out(rest, {&block, 20, 24, 200});
+    const auto way = escape_path(rest, {&block, 20, 24, 200});
     ASSERT_EQ(way.has_value(), window > 8) << window;
     if (!way) continue;
     Vec3 end(0, 0, 0);
@@ -196,22 +196,22 @@ TEST(WayOut, LeadsThroughAWindowThatIsLargeEnough) {
   }
 }
 
-TEST(WayOut, IsEmptyInTheOpen) {
+TEST(EscapePath, IsEmptyInTheOpen) {
   const SolidGrid grid = grid_of(Vec3(80, 60, 60), 0.5);
   const SolidPart block = drawn(shapes::box(Vec3(6, 7, 8)), grid);
   const SolidTray rest(grid, {{&block, 0, 0, 0}});
-  const auto way = way_out(rest, {&block, 40, 24, 0});
+  const auto way = escape_path(rest, {&block, 40, 24, 0});
   ASSERT_TRUE(way);
   EXPECT_TRUE(way->empty());
 }
 
-TEST(RemovalPlan, NoneWhereAPartIsShutIn) {
+TEST(DisassemblyOrder, NoneWhereAPartIsShutIn) {
   const SolidGrid grid = grid_of(Vec3(80, 60, 60), 0.5);
   const SolidPart block = drawn(shapes::box(Vec3(6, 7, 8)), grid);
   const SolidPart house = drawn(box_with_window(7.5), grid);
-  EXPECT_FALSE(removal_plan(grid, {{&house, 10, 10, 0}, {&block, 20, 24, 200}}));
+  EXPECT_FALSE(disassembly_order(grid, {{&house, 10, 10, 0}, {&block, 20, 24, 200}}));
   const SolidPart open_house = drawn(box_with_window(10), grid);
-  const auto plan = removal_plan(grid, {{&open_house, 10, 10, 0}, {&block, 20, 24, 200}});
+  const auto plan = disassembly_order(grid, {{&open_house, 10, 10, 0}, {&block, 20, 24, 200}});
   ASSERT_TRUE(plan);
   EXPECT_EQ(plan->order.front(), 1);
   EXPECT_FALSE(plan->paths[1].empty());

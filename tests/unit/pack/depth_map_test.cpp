@@ -7,8 +7,8 @@
 
 #include <rapidcheck/gtest.h>
 
-#include "base/no_height.h"
 #include "base/random.h"
+#include "base/sentinel_heights.h"
 #include "fixtures/z_buffer.h"
 #include "pack/columns.h"
 #include "pack/rotations.h"

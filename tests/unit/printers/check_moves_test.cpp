@@ -1,4 +1,4 @@
-#include "printers/check_moves.h"
+#include "printers/check/check_moves.h"
 
 #include <gtest/gtest.h>
 

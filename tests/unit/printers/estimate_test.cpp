@@ -1,4 +1,4 @@
-#include "printers/estimate.h"
+#include "printers/estimate/estimate.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "fixtures/profiles.h"
-#include "printers/fdm_toolpath.h"
-#include "printers/linear_estimate.h"
-#include "printers/polyjet.h"
+#include "printers/estimate/fdm_toolpath.h"
+#include "printers/estimate/linear_estimate.h"
+#include "printers/estimate/polyjet.h"
 #include "shapes.h"
 
 namespace packmerger {

@@ -1,4 +1,4 @@
-#include "printers/gpx_source.h"
+#include "printers/program/gpx_source.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "printers/layer_extents.h"
+#include "printers/slice/layer_extents.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "base/parallel.h"
 #include "model/mesh.h"
-#include "printers/layers.h"
-#include "printers/slice_layers.h"
+#include "printers/slice/layers.h"
+#include "printers/slice/slice_layers.h"
 #include "shapes.h"
 
 namespace packmerger {

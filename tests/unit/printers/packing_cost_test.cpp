@@ -1,11 +1,11 @@
-#include "printers/packing_cost.h"
+#include "printers/estimate/packing_cost.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "base/error.h"
 #include "fixtures/profiles.h"
-#include "printers/estimate.h"
+#include "printers/estimate/estimate.h"
 #include "shapes.h"
 
 namespace packmerger {

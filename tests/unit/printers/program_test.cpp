@@ -1,4 +1,4 @@
-#include "printers/program.h"
+#include "printers/program/program.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "base/process.h"
+#include "base/process/process.h"
 #include "fixtures/profiles.h"
-#include "printers/slice.h"
-#include "printers/x3g.h"
+#include "printers/program/x3g.h"
+#include "printers/slice/slice.h"
 #include "shapes.h"
 
 namespace packmerger {

@@ -1,4 +1,4 @@
-#include "printers/slice.h"
+#include "printers/slice/slice.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include "base/files.h"
 #include "fixtures/profiles.h"
 #include "gcode/gcode_line.h"
-#include "printers/check_moves.h"
-#include "printers/estimate.h"
-#include "printers/program.h"
-#include "printers/slicer_settings.h"
+#include "printers/check/check_moves.h"
+#include "printers/estimate/estimate.h"
+#include "printers/program/program.h"
+#include "printers/slice/slicer_settings.h"
 #include "shapes.h"
 
 namespace packmerger {

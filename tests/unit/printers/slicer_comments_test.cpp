@@ -1,9 +1,9 @@
-#include "printers/slicer_comments.h"
+#include "printers/slice/slicer_comments.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "printers/extruded.h"
+#include "printers/estimate/extruded.h"
 
 namespace packmerger {
 namespace {

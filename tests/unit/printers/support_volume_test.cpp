@@ -1,4 +1,4 @@
-#include "printers/support_volume.h"
+#include "printers/estimate/support_volume.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

@@ -1,5 +1,5 @@
 // Divisions by planes: what is promised of the search, of the judge and of the exact cuts.
-#include "shape/cut_plans.h"
+#include "shape/cut/cut_plans.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -11,10 +11,10 @@
 #include "base/parallel.h"
 #include "fixtures/tet_models.h"
 #include "part_checks.h"
-#include "shape/cut_recipes.h"
-#include "shape/manifold_parts.h"
-#include "shape/plane_cut.h"
-#include "shape/stand_alone.h"
+#include "shape/cut/cut_recipes.h"
+#include "shape/cut/plane_cut.h"
+#include "shape/cut/stand_alone.h"
+#include "shape/divide/manifold_parts.h"
 
 namespace packmerger {
 namespace {

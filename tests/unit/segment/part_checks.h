@@ -9,8 +9,8 @@
 
 #include "base/random.h"
 #include "model/mesh.h"
-#include "shape/adjacency.h"
-#include "shape/part_surface.h"
+#include "shape/divide/adjacency.h"
+#include "shape/divide/part_surface.h"
 
 namespace packmerger::checks {
 

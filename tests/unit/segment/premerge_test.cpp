@@ -1,5 +1,5 @@
 // Pre-merging: what it promises, and when it must not merge.
-#include "shape/premerge.h"
+#include "shape/divide/premerge.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include "base/parallel.h"
 #include "fixtures/tet_models.h"
 #include "part_checks.h"
-#include "shape/manifold_parts.h"
-#include "shape/segment.h"
+#include "shape/divide/manifold_parts.h"
+#include "shape/divide/segment.h"
 
 namespace packmerger {
 namespace {

@@ -4,14 +4,14 @@
 #include "base/parallel.h"
 #include "fixtures/models.h"
 #include "part_checks.h"
-#include "shape/cut_plans.h"
-#include "shape/manifold_parts.h"
-#include "shape/premerge.h"
-#include "shape/repair.h"
-#include "shape/segment.h"
-#include "shape/smooth_cuts.h"
-#include "shape/solidify.h"
-#include "shape/surface_query.h"
+#include "shape/cut/cut_plans.h"
+#include "shape/divide/manifold_parts.h"
+#include "shape/divide/premerge.h"
+#include "shape/divide/segment.h"
+#include "shape/divide/smooth_cuts.h"
+#include "shape/solid/solidify.h"
+#include "shape/surface/repair.h"
+#include "shape/surface/surface_query.h"
 
 namespace packmerger {
 namespace {

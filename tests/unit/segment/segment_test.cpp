@@ -8,9 +8,9 @@
 #include "base/parallel.h"
 #include "fixtures/tet_models.h"
 #include "part_checks.h"
-#include "shape/manifold_parts.h"
-#include "shape/segment.h"
-#include "shape/stars.h"
+#include "shape/divide/manifold_parts.h"
+#include "shape/divide/pinch_test.h"
+#include "shape/divide/segment.h"
 
 namespace packmerger {
 namespace {

@@ -1,5 +1,5 @@
 // Smoothing: rougher cuts become smooth, and the model keeps its shape.
-#include "shape/smooth_cuts.h"
+#include "shape/divide/smooth_cuts.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -7,9 +7,9 @@
 
 #include "fixtures/tet_models.h"
 #include "part_checks.h"
-#include "shape/manifold_parts.h"
-#include "shape/segment.h"
-#include "shape/stars.h"
+#include "shape/divide/manifold_parts.h"
+#include "shape/divide/pinch_test.h"
+#include "shape/divide/segment.h"
 
 namespace packmerger {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 #include "fixtures/models.h"
-#include "shape/repair.h"
-#include "shape/resample.h"
-#include "shape/soup.h"
-#include "shape/surface_query.h"
-#include "shape/unite_bodies.h"
+#include "shape/read/soup.h"
+#include "shape/surface/repair.h"
+#include "shape/surface/resample.h"
+#include "shape/surface/surface_query.h"
+#include "shape/surface/unite_bodies.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "shape/hollow.h"
+#include "shape/solid/hollow.h"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +10,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "fixtures/models.h"
-#include "shape/repair.h"
-#include "shape/solidify.h"
-#include "shape/soup.h"
-#include "shape/surface_query.h"
+#include "shape/read/soup.h"
+#include "shape/solid/solidify.h"
+#include "shape/surface/repair.h"
+#include "shape/surface/surface_query.h"
 
 namespace packmerger {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "fixtures/fault_of.h"
 #include "fixtures/models.h"
-#include "shape/read_model.h"
+#include "shape/read/read_model.h"
 #include "unit/shape/written.h"
 
 namespace packmerger::written {

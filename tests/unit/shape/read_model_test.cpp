@@ -1,4 +1,4 @@
-#include "shape/read_model.h"
+#include "shape/read/read_model.h"
 
 #include <cstdlib>
 #include <limits>
@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "fixtures/models.h"
-#include "shape/soup.h"
-#include "shape/utf16.h"
+#include "shape/read/soup.h"
+#include "shape/read/utf16.h"
 #include "unit/shape/written.h"
 
 namespace packmerger {
@@ -185,7 +185,7 @@ TEST(ReadModel, NamesWhatIsNoMesh) {
     return "";
   };
   using testing::ElementsAre;
-using testing::HasSubstr;
+  using testing::HasSubstr;
   EXPECT_THAT(told("\x1F\x8B" + text), HasSubstr("gzip"));
   EXPECT_THAT(told(std::string("\xFF\xFE\0\0s\0\0\0", 8)), HasSubstr("UTF-32"));
   EXPECT_THAT(told("ISO-10303-21;\n"), HasSubstr("STEP"));

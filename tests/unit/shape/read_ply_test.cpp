@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "fixtures/fault_of.h"
-#include "shape/read_model.h"
-#include "shape/soup.h"
+#include "shape/read/read_model.h"
+#include "shape/read/soup.h"
 #include "unit/shape/written.h"
 
 namespace packmerger {

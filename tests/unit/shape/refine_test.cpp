@@ -1,4 +1,4 @@
-#include "shape/refine.h"
+#include "shape/surface/refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <rapidcheck.h>
 
 #include "fixtures/models.h"
-#include "shape/soup.h"
+#include "shape/read/soup.h"
 
 namespace packmerger {
 namespace {

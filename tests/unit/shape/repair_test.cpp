@@ -1,4 +1,4 @@
-#include "shape/repair.h"
+#include "shape/surface/repair.h"
 
 #include <algorithm>
 #include <string>
@@ -9,8 +9,8 @@
 
 #include "fixtures/fault_of.h"
 #include "fixtures/models.h"
-#include "shape/soup.h"
-#include "shape/surface_query.h"
+#include "shape/read/soup.h"
+#include "shape/surface/surface_query.h"
 
 namespace packmerger {
 namespace {

@@ -1,13 +1,13 @@
-#include "shape/resample.h"
+#include "shape/surface/resample.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "fixtures/models.h"
-#include "shape/repair.h"
-#include "shape/soup.h"
-#include "shape/surface_query.h"
+#include "shape/read/soup.h"
+#include "shape/surface/repair.h"
+#include "shape/surface/surface_query.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "shape/solidify.h"
+#include "shape/solid/solidify.h"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +13,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "fixtures/models.h"
-#include "shape/hollow.h"
-#include "shape/repair.h"
-#include "shape/soup.h"
-#include "shape/surface_query.h"
-#include "shape/tetrahedralize.h"
+#include "shape/read/soup.h"
+#include "shape/solid/hollow.h"
+#include "shape/solid/tetrahedralize.h"
+#include "shape/surface/repair.h"
+#include "shape/surface/surface_query.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "shape/tetgen_files.h"
+#include "shape/solid/tetgen_files.h"
 
 #include <gtest/gtest.h>
 

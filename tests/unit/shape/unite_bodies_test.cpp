@@ -1,4 +1,4 @@
-#include "shape/unite_bodies.h"
+#include "shape/surface/unite_bodies.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fixtures/models.h"
-#include "shape/repair.h"
-#include "shape/soup.h"
+#include "shape/read/soup.h"
+#include "shape/surface/repair.h"
 
 namespace packmerger {
 namespace {

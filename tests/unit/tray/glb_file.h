@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/files.h"
-#include "base/process.h"
+#include "base/process/process.h"
 
 namespace packmerger {
 

@@ -1,0 +1,112 @@
+#include "printers/estimate/print_terms.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+#include "printers/estimate/fdm_toolpath.h"
+#include "printers/estimate/polyjet.h"
+#include "printers/estimate/support_volume.h"
+#include "printers/slice/layers.h"
+#include "printers/slice/slice.h"
+
+namespace packmerger {
+namespace {
+
+void require_positive(const Profile& profile, double value, const char* key) {
+  if (value > 0) return;
+  throw Error(Fault::kBadProfile,
+              "Profile " + profile.id + ": " + key + " must be positive to estimate a print",
+              std::string("Set ") + key + " in the profile or with --set.");
+}
+
+void require_toolpath(const Profile& profile) {
+  const FdmSettings& settings = profile.fdm;
+  require_positive(profile, bead(settings, profile.layer_mm).spacing_mm, "fdm.line_width_mm");
+  require_positive(profile, settings.speed_mm_s, "fdm.speed_mm_s");
+  require_positive(profile, settings.external_speed_mm_s, "fdm.external_speed_mm_s");
+  require_positive(profile, settings.acceleration_mm_s2, "fdm.acceleration_mm_s2");
+  require_positive(profile, settings.min_speed_mm_s, "fdm.min_speed_mm_s");
+}
+
+BothTerms terms_of(const Profile& profile, const Tray& tray) {
+  std::vector<const Mesh*> parts;
+  for (const Mesh& part : tray.parts) parts.push_back(&part);
+  PrintTerms terms;
+  terms.by = estimator_of(profile);
+  if (terms.by == Estimator::kPath) {
+    add_tool_path(terms, profile, parts);
+    return {terms, terms};
+  }
+  terms.layers = layer_count(top_of(parts), profile.layer_mm);
+  for (const Mesh* part : parts) terms.model_mm3 += volume_mm3(*part);
+  terms.support_mm3 = support_volume_mm3(parts, radians(profile.support_angle_deg));
+  terms.held_mm3 = terms.support_mm3;
+  BothTerms both{terms, terms};
+  if (terms.by == Estimator::kPolyjet) add_passes(both, profile, parts);
+  return both;
+}
+
+}  // namespace
+
+Estimator estimator_of(const Profile& profile) {
+  if (profile.technology == Technology::kPolyjet) return Estimator::kPolyjet;
+  return profile.fdm.time == FdmTime::kDeposition ? Estimator::kDeposition : Estimator::kPath;
+}
+
+Estimator taught_estimator_of(const Profile& profile) {
+  return profile.is_sliced() ? Estimator::kPath : estimator_of(profile);
+}
+
+PrintTerms& PrintTerms::operator+=(const PrintTerms& other) {
+  trays += other.trays;
+  layers += other.layers;
+  passes += other.passes;
+  passes_mm += other.passes_mm;
+  model_mm3 += other.model_mm3;
+  support_mm3 += other.support_mm3;
+  held_mm3 += other.held_mm3;
+  path_s += other.path_s;
+  return *this;
+}
+
+BothTerms both_terms(const Profile& profile, const std::vector<Tray>& trays,
+                     const Progress& progress) {
+  require_constants(profile);
+  BothTerms sum;
+  sum.straight.by = sum.turned.by = estimator_of(profile);
+  sum.straight.trays = sum.turned.trays = 0;
+  for (const Tray& tray : trays) {
+    progress.check();
+    const BothTerms one = terms_of(profile, tray);
+    sum.straight += one.straight;
+    sum.turned += one.turned;
+  }
+  progress.check();
+  return sum;
+}
+
+PrintTerms print_terms(const Profile& profile, const std::vector<Tray>& trays,
+                       const Progress& progress) {
+  if (!profile.is_sliced()) return both_terms(profile, trays, progress).straight;
+  PrintTerms terms;
+  terms.by = Estimator::kPath;
+  terms.trays = static_cast<int>(trays.size());
+  terms.path_s = estimate_by_slicer(profile, trays, {}, progress).time_s -
+                 static_cast<double>(terms.trays) * profile.fdm.start_s;
+  return terms;
+}
+
+void require_constants(const Profile& profile) {
+  require_positive(profile, profile.layer_mm, "layer_mm");
+  switch (estimator_of(profile)) {
+    case Estimator::kPolyjet:
+      return require_positive(profile, profile.polyjet.swath_mm, "polyjet.swath_mm");
+    case Estimator::kDeposition:
+      return require_positive(profile, profile.fdm.deposition_cm3_h, "fdm.deposition_cm3_h");
+    case Estimator::kPath:
+      return require_toolpath(profile);
+  }
+}
+
+}  // namespace packmerger
