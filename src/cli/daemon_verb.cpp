@@ -9,6 +9,7 @@
 #include "base/names.h"
 #include "job/compare/comparison_table.h"
 #include "local/client.h"
+#include "local/places.h"
 
 namespace packmerger::cli {
 namespace {

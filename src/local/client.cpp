@@ -8,13 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
 
 #include "base/error.h"
-#include "daemon/settings/config.h"
 
 namespace packmerger {
 namespace {
@@ -96,17 +94,6 @@ class Connection {
 };
 
 }  // namespace
-
-std::filesystem::path default_socket() {
-  if (const char* given = std::getenv("PACKMERGER_SOCKET"); given != nullptr && *given != '\0')
-    return given;
-  std::error_code ignored;
-  const std::filesystem::path own = socket_in(default_state_folder());
-  const std::filesystem::path system = socket_in("/run/packmerger");
-  const bool only_system =
-      !std::filesystem::exists(own, ignored) && std::filesystem::exists(system, ignored);
-  return only_system ? system : own;
-}
 
 json ask_daemon(const std::filesystem::path& socket, const json& request) {
   Connection connection(socket);

@@ -6,10 +6,6 @@
 
 namespace packmerger {
 
-// $PACKMERGER_SOCKET, or the socket in the user's own state folder, or, where only that one is
-// there, that of the system's daemon in /run/packmerger.
-std::filesystem::path default_socket();
-
 // What the daemon of every version says of a verb that it does not know: by this sentence a later
 // program knows that it speaks to an older one.
 inline constexpr const char* kUnknownVerb = "The request's verb is unknown";

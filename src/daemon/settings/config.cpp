@@ -12,17 +12,13 @@
 #include "daemon/settings/config_printers.h"
 #include "daemon/settings/config_sections.h"
 #include "daemon/settings/config_table.h"
+#include "local/places.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 constexpr std::size_t kMaxSocketPath = 107;  // sun_path of unix(7), less its final zero
-
-fs::path environment_path(const char* name) {
-  const char* text = std::getenv(name);
-  return text != nullptr ? text : "";
-}
 
 void read_top(TableReader& reader, const fs::path& file, DaemonConfig& config) {
   reader.text("state", "the path of a folder", [&](const std::string& text) {
@@ -141,16 +137,6 @@ DaemonConfig read_config(const fs::path& file) {
     read_printers(file, *printers, config);
   return config;
 }
-
-fs::path default_state_folder() {
-  if (const fs::path given = environment_path("STATE_DIRECTORY"); given.is_absolute()) return given;
-  if (const fs::path base = environment_path("XDG_STATE_HOME"); base.is_absolute())
-    return base / "packmerger";
-  const fs::path home = environment_path("HOME");
-  return home.is_absolute() ? home / ".local/state/packmerger" : fs::path();
-}
-
-fs::path socket_in(const fs::path& folder) { return folder / "packmergerd.sock"; }
 
 std::vector<DaemonKey> daemon_keys() {
   const fs::path file;

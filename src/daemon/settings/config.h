@@ -109,12 +109,6 @@ struct DaemonConfig {
 // and what was expected, Error{kNoInput} when there is no such file.
 DaemonConfig read_config(const std::filesystem::path& file);
 
-// $STATE_DIRECTORY, or packmerger below $XDG_STATE_HOME, or ~/.local/state/packmerger.
-std::filesystem::path default_state_folder();
-
-// The socket's name in a folder.
-std::filesystem::path socket_in(const std::filesystem::path& folder);
-
 // One key as docs/DAEMON.md shows it; tables are written as in the file ("prepare.time_s",
 // "printer.NAME.port").
 struct DaemonKey {
