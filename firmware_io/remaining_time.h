@@ -3,14 +3,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace packmerger {
-
-class GcodeCommands;
-namespace s3g {
-class Actions;
-}
 
 // The program's own idea of its time: after `done` lines or bytes, expected_s seconds have passed.
 struct TimeMark {
@@ -18,15 +14,18 @@ struct TimeMark {
   double expected_s = 0;
 };
 
-// Whether the program carries its slicer's clock: at least two marks (M73 R, minutes left).
-bool has_slicer_marks(const GcodeCommands& commands);
+// Gathers marks step by step; of a long program it keeps every n-th, and the last.
+class TimeMarks {
+ public:
+  explicit TimeMarks(std::size_t steps);
+  void add(std::size_t done, double expected_s, bool is_last);
+  std::vector<TimeMark> take() { return std::move(marks_); }
 
-// From the slicer's marks (M73 R, minutes left) where the program has them, otherwise from the
-// lengths and speeds of its moves and its dwells; heating and homing count nothing. done: commands.
-std::vector<TimeMark> time_marks(const GcodeCommands& commands);
-
-// From the moves and delays of an x3g program. done: its bytes.
-std::vector<TimeMark> time_marks(const s3g::Actions& actions);
+ private:
+  std::size_t every_;
+  std::size_t steps_ = 0;
+  std::vector<TimeMark> marks_;
+};
 
 class RemainingTime {
  public:

@@ -11,6 +11,7 @@
 #include "firmware_io/gcode/gcode_channel.h"
 #include "firmware_io/gcode/gcode_script.h"
 #include "firmware_io/gcode/gcode_stream.h"
+#include "firmware_io/gcode/gcode_time_marks.h"
 #include "gcode/gcode_line.h"
 
 namespace packmerger {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "firmware_io/usb/usb_library.h"
+#include "firmware_io/ports/usb_library.h"
 
 namespace packmerger {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "firmware_io/ports/port.h"
 
 namespace packmerger {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/time/clock.h"
-#include "firmware_io/usb/usb_library.h"
+#include "firmware_io/ports/usb_library.h"
 
 namespace packmerger {
 

@@ -5,6 +5,7 @@
 #include "firmware_io/s3g/s3g_actions.h"
 #include "firmware_io/s3g/s3g_channel.h"
 #include "firmware_io/s3g/s3g_print.h"
+#include "firmware_io/s3g/s3g_time_marks.h"
 
 namespace packmerger {
 

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/descriptor.h"
 #include "base/error.h"
-#include "base/process/descriptor.h"
 #include "firmware_io/conversation.h"
 #include "firmware_io/usb/usb_printer.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "firmware_io/ports/fd_port.h"
-#include "firmware_io/usb/usb_library.h"
+#include "firmware_io/ports/usb_library.h"
 
 namespace packmerger {
 

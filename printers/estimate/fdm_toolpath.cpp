@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "printers/estimate/support_volume.h"
+#include "printers/layers/support_volume.h"
 
 namespace packmerger {
 namespace {

@@ -6,7 +6,7 @@
 #include "model/mesh.h"
 #include "model/printer.h"
 #include "printers/estimate/print_terms.h"
-#include "printers/slice/slice_layers.h"
+#include "printers/layers/slice_layers.h"
 
 namespace packmerger {
 

@@ -6,7 +6,8 @@
 #include "printers/estimate/fdm_toolpath.h"
 #include "printers/estimate/linear_estimate.h"
 #include "printers/estimate/polyjet.h"
-#include "printers/slice/layers.h"
+#include "printers/layers/layers.h"
+#include "printers/price.h"
 
 namespace packmerger {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "printers/slice/layer_extents.h"
+#include "printers/layers/layer_extents.h"
 
 namespace packmerger {
 namespace {

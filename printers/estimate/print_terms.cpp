@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "printers/estimate/fdm_toolpath.h"
 #include "printers/estimate/polyjet.h"
-#include "printers/estimate/support_volume.h"
-#include "printers/slice/layers.h"
+#include "printers/layers/layers.h"
+#include "printers/layers/support_volume.h"
 #include "printers/slice/slice.h"
 
 namespace packmerger {

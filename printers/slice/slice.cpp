@@ -13,8 +13,8 @@
 #include "base/process/process.h"
 #include "model/stl.h"
 #include "printers/check/check_moves.h"
-#include "printers/estimate/estimate.h"
-#include "printers/estimate/extruded.h"
+#include "printers/price.h"
+#include "printers/slice/extruded.h"
 #include "printers/slice/slicer_comments.h"
 #include "printers/slice/slicer_settings.h"
 

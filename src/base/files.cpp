@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/error.h"
-#include "base/process/descriptor.h"
-#include "base/process/remains.h"
+#include "base/remains.h"
 #include "base/sign_of_life.h"
 
 namespace packmerger {

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/error.h"
 #include "base/names.h"
-#include "base/process/descriptor.h"
 #include "base/sign_of_life.h"
 #include "base/time/clock.h"
 

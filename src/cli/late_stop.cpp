@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "base/process/remains.h"
+#include "base/process/end_at_once.h"
 
 namespace packmerger::cli {
 namespace {

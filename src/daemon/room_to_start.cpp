@@ -6,8 +6,8 @@
 
 #include <cerrno>
 
+#include "base/descriptor.h"
 #include "base/names.h"
-#include "base/process/descriptor.h"
 #include "base/time/wall_clock.h"
 #include "daemon/intake/folder_actions.h"
 #include "job/store/deletable_jobs.h"

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "base/descriptor.h"
 #include "base/files.h"
-#include "base/process/descriptor.h"
 
 namespace packmerger {
 

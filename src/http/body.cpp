@@ -8,7 +8,7 @@
 #include <array>
 #include <cstring>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "http/compress.h"
 
 namespace packmerger {

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/descriptor.h"
 #include "base/error.h"
-#include "base/process/descriptor.h"
 #include "base/time/soon.h"
 #include "http/exchange.h"
 

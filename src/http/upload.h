@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "http/message.h"
 
 namespace packmerger {

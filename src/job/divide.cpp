@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "job/arrangement.h"
+#include "job/compare/arrangement.h"
 #include "shape/divide/segment.h"
 #include "shape/divide/smooth_cuts.h"
 #include "shape/solid/solidify.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "job/compare/comparison_key.h"
+#include "job/comparison_key.h"
 #include "job/plan_steps.h"
 #include "job/timings.h"
 #include "printers/estimate/estimate.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "job/arrangement.h"
+#include "job/compare/arrangement.h"
 #include "job/load_models.h"
 #include "model/job.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/files.h"
 #include "job/compare/advice.h"
-#include "job/compare/comparison_key.h"
+#include "job/comparison_key.h"
 #include "job/plan_steps.h"
 #include "job/timings.h"
 

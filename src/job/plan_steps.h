@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "job/arrangement.h"
+#include "job/compare/arrangement.h"
 #include "job/compare/unpacked.h"
 #include "job/divide.h"
 #include "job/load_models.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/progress.h"
-#include "job/arrangement.h"
+#include "job/compare/arrangement.h"
 #include "model/printer.h"
 
 namespace packmerger {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "base/time/wall_clock.h"
 
 namespace packmerger {

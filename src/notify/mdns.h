@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "notify/notice.h"
 #include "notify/standing.h"
 

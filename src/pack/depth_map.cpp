@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/sentinel_heights.h"
+#include "model/sentinel_heights.h"
 #include "pack/columns.h"
 
 namespace packmerger {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/sentinel_heights.h"
+#include "model/sentinel_heights.h"
 #include "pack/columns.h"
 
 namespace packmerger {

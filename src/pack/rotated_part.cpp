@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "base/sentinel_heights.h"
+#include "model/sentinel_heights.h"
 
 namespace packmerger {
 namespace {

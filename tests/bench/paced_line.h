@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "firmware_io/simulated/firmware.h"
 
 namespace packmerger::bench {

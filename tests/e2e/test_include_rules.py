@@ -1,5 +1,8 @@
 #!/usr/bin/python3
 """The rules of the house that a script can see: who includes whom, lengths, words, headers (docs/ARCHITECTURE)."""
+import collections
+import functools
+import os
 import pathlib
 import re
 import sys
@@ -10,38 +13,69 @@ CODE = {".h", ".cpp"}
 TEXT = CODE | {".py", ".js", ".ts", ".md", ".toml", ".txt", ".cmake", ".sh", ".json", ".html", ".css", ".tsx", ".service", ".rules"}
 SKIPPED_FOLDERS = {"build", "node_modules", ".git", "__pycache__"}
 
-MAY_INCLUDE = {
-    "base": set(),
-    "model": {"base"},
-    "offscreen": {"model", "base"},
-    "shape": {"model", "base"},
-    "gcode": {"base"},
-    "printers": {"gcode", "model", "base"},
-    "pack": {"model", "base"},
-    "picture": {"offscreen", "model", "base"},
-    "tray": {"picture", "model", "base"},
-    "firmware_io": {"gcode", "base"},
-    "http": {"base"},
-    "notify": {"base"},
-    "job": {"tray", "picture", "pack", "printers", "gcode", "shape", "offscreen", "model", "base"},
-}
-EVERYTHING = {"daemon", "cli", "install"}
-FOLDERS = set(MAY_INCLUDE) | EVERYTHING
 OWNERS = {r"tetgen\.h": "one file", r"GL/osmesa\.h": "offscreen", r"microhttpd\.h": "http",
           r"(curl/.*|MQTTClient|avahi-.*)\.h": "notify"}
 
 LONG_LINES, TOO_LONG_LINES = 300, 450
+MOST_FILES = 25
 # spelled in pieces, so that this file does not contain them
 FORBIDDEN = ["/wo" + "rk/", "sub" + "agent", r"\bTO" + r"DO\b", r"\bFIX" + r"ME\b", r"\bXX" + r"X\b"]
 
 
+def table_rows(page, *columns):
+    """The rows of the page's table with these columns, cell by cell."""
+    lines = (SOURCE / page).read_text(encoding="utf-8").splitlines()
+    first = lines.index("| " + " | ".join(columns) + " |") + 2
+    for line in lines[first:]:
+        if not line.startswith("|"):
+            return
+        yield [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def words_in(cell):
+    return set(re.findall(r"[\w/]+", cell))
+
+
+def rooms():
+    """The rooms of docs/ARCHITECTURE that hold C++, and what each may include: those named, or "everything but" them."""
+    rows = {name.strip("`").removeprefix("src/"): words_in(allowed)
+            for name, _, allowed in table_rows("docs/ARCHITECTURE.md", "folder", "what it holds", "may include")}
+    return {name: set(rows) - words if "everything" in words else words & set(rows)
+            for name, words in rows.items() if words and name != "tests"}
+
+
+def house_of(room):
+    """Its folder: src/shape, printers."""
+    return SOURCE / ("src" if (SOURCE / "src" / room).is_dir() else "") / room
+
+
+def inner_rooms(room):
+    """The folders of a room as its README lists them, and which others of the room each may include."""
+    readme = house_of(room) / "README.md"
+    if not readme.exists():
+        return {}
+    rows = {name.strip("`"): words_in(allowed)
+            for name, _, allowed in table_rows(readme, "folder", "what lives there", "may include")}
+    return {name: set(rows) - words if "everything" in words else words for name, words in rows.items()}
+
+
+MAY_INCLUDE = rooms()
+FOLDERS = set(MAY_INCLUDE)
+
+
+@functools.cache
+def all_files():
+    """Files of the source tree; build trees and packages are left out, and not looked into."""
+    found = []
+    for folder, inner, names in os.walk(SOURCE):
+        inner[:] = [name for name in inner
+                    if name not in SKIPPED_FOLDERS and (not name.startswith("build") or name == "build_rules")]
+        found += [pathlib.Path(folder, name) for name in names]
+    return sorted(found)
+
+
 def files(*suffixes):
-    """Files of the source tree with their folder's short name; build trees and packages are left out."""
-    for path in sorted(SOURCE.rglob("*")):
-        parts = path.relative_to(SOURCE).parts
-        hidden = any(part in SKIPPED_FOLDERS or part.startswith("build") and part != "build_rules" for part in parts[:-1])
-        if path.is_file() and not hidden and path.suffix in suffixes:
-            yield path
+    return [path for path in all_files() if path.suffix in suffixes]
 
 
 def folder_of(path):
@@ -63,6 +97,12 @@ def name_of(path):
     return str(path.relative_to(SOURCE))
 
 
+def inner_folder(name):
+    """"surface" for shape/surface/repair.h, "web/doors" for daemon/web/doors/door.h, "shape" for shape/shape.h."""
+    room, *inner, _ = name.split("/")
+    return "/".join(inner) or room
+
+
 class Includes(unittest.TestCase):
     def test_there_is_code(self):
         self.assertGreater(len(house_code()), 20)
@@ -70,12 +110,39 @@ class Includes(unittest.TestCase):
     def test_folders_include_what_the_table_allows(self):
         wrong = []
         for path, folder in house_code():
-            allowed = FOLDERS if folder in EVERYTHING else MAY_INCLUDE[folder] | {folder}
+            allowed = MAY_INCLUDE[folder] | {folder}
             for included in includes(path):
                 target = included.split("/")[0]
                 if target in FOLDERS and target not in allowed:
                     wrong.append(f"{name_of(path)} includes {included}")
         self.assertEqual(wrong, [])
+
+    def test_folders_of_a_room_include_what_its_readme_allows(self):
+        """Downwards only; the room's own files are the row that has the room's name."""
+        wrong = []
+        for room in FOLDERS:
+            allowed = inner_rooms(room)
+            for path, folder in house_code():
+                if folder != room:
+                    continue
+                inner = inner_folder(name_of(path).removeprefix("src/"))
+                for included in includes(path) if allowed else []:
+                    if not included.startswith(room + "/"):
+                        continue
+                    target = inner_folder(included)
+                    if target != inner and target not in allowed.get(inner, set()):
+                        wrong.append(f"{name_of(path)} includes {included}")
+        self.assertEqual(wrong, [])
+
+    def test_inner_folders_are_listed_and_make_no_circle(self):
+        for room in FOLDERS:
+            there = {inner_folder(name_of(path).removeprefix("src/")) for path, folder in house_code() if folder == room}
+            left = inner_rooms(room)
+            self.assertEqual(there if len(there) > 1 else set(left), set(left), f"{room}: what is there, and what its README lists")
+            while left:
+                lowest = {name for name, allowed in left.items() if not (allowed - {name}) & set(left)}
+                self.assertTrue(lowest, f"{room}: these include one another: {sorted(left)}")
+                left = {name: allowed for name, allowed in left.items() if name not in lowest}
 
     def test_own_headers_are_named_with_their_folder(self):
         wrong = []
@@ -89,7 +156,7 @@ class Includes(unittest.TestCase):
         """target_link_libraries spells the same rules."""
         wrong = []
         for folder, allowed in MAY_INCLUDE.items():
-            listing = SOURCE / ("src" if (SOURCE / "src" / folder).is_dir() else "") / folder / "CMakeLists.txt"
+            listing = house_of(folder) / "CMakeLists.txt"
             text = re.sub(r"#.*", "", listing.read_text(encoding="utf-8"))
             library = re.search(rf"packmerger_library\(packmerger_{folder}\b(.*?)\)", text, re.DOTALL)
             linked = set(re.findall(r"\bpackmerger_(\w+)", library.group(1))) & FOLDERS if library else set()
@@ -118,7 +185,7 @@ class Includes(unittest.TestCase):
         for path, folder in house_code():
             simulated = "simulated" in path.relative_to(SOURCE).parts
             for included in includes(path) if folder == "firmware_io" else []:
-                codec = re.match(r"firmware_io/(gcode|s3g|usb)\w*\.h", included)
+                codec = re.match(r"firmware_io/(gcode|s3g|usb)/", included)
                 if (simulated and codec) or (not simulated and included.startswith("firmware_io/simulated/")):
                     wrong.append(f"{name_of(path)} includes {included}")
         self.assertEqual(wrong, [])
@@ -137,6 +204,14 @@ class Files(unittest.TestCase):
             if lines > LONG_LINES:
                 print(f"long: {name} has {lines} lines, {LONG_LINES} are aimed at", file=sys.stderr)
         self.assertEqual([f"{name}: {lines}" for name, lines in lengths.items() if lines > TOO_LONG_LINES], [])
+
+    def test_no_folder_grows_beyond_what_can_be_looked_over(self):
+        """src/pack gets its rooms with its next search; src/cli is one file a verb."""
+        full = {}
+        for room in FOLDERS - {"pack", "cli"}:
+            own = collections.Counter(path.parent for path in all_files() if house_of(room) in path.parents)
+            full |= {str(folder.relative_to(SOURCE)): count for folder, count in own.items() if count > MOST_FILES}
+        self.assertEqual(full, {})
 
     def test_no_forbidden_words(self):
         found = []

@@ -9,7 +9,7 @@
 
 #include <array>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 #include "firmware_io/ports/port.h"
 #include "sim/terminal_printer.h"
 

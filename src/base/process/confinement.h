@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/process/descriptor.h"
+#include "base/descriptor.h"
 
 namespace packmerger {
 

@@ -19,7 +19,7 @@
 
 #include "base/error.h"
 #include "base/process/confinement.h"
-#include "base/process/remains.h"
+#include "base/remains.h"
 
 namespace packmerger {
 namespace {

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/descriptor.h"
 #include "base/error.h"
-#include "base/process/descriptor.h"
 #include "base/time/soon.h"
 
 namespace packmerger {

@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "printers/estimate/estimate.h"
-#include "printers/slice/slice_layers.h"
+#include "printers/layers/slice_layers.h"
 
 namespace packmerger {
 namespace {

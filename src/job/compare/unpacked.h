@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "job/arrangement.h"
+#include "job/compare/arrangement.h"
 #include "model/mesh.h"
 #include "model/printer.h"
 

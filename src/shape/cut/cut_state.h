@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "shape/cut/cut_tree.h"
-#include "shape/cut/fit.h"
 #include "shape/cut/stand_alone.h"
+#include "shape/divide/fit.h"
 
 namespace packmerger {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "shape/cut/fit.h"
 #include "shape/divide/adjacency.h"
+#include "shape/divide/fit.h"
 #include "shape/divide/manifold_parts.h"
 
 namespace packmerger {

@@ -10,9 +10,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "shape/read/soup.h"
-#include "shape/solid/distance_grid.h"
 #include "shape/solid/inside_point.h"
 #include "shape/surface/coarsen.h"
+#include "shape/surface/distance_grid.h"
 #include "shape/surface/repair.h"
 #include "shape/surface/surface_query.h"
 

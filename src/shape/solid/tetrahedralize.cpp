@@ -12,8 +12,8 @@
 #include "base/process/process.h"
 #include "shape/read/soup.h"
 #include "shape/solid/inside_point.h"
+#include "shape/solid/refine.h"
 #include "shape/solid/tetgen_files.h"
-#include "shape/surface/refine.h"
 
 namespace packmerger {
 namespace {

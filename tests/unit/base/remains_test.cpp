@@ -1,4 +1,4 @@
-#include "base/process/remains.h"
+#include "base/remains.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/files.h"
+#include "base/process/end_at_once.h"
 #include "base/process/process.h"
 
 namespace packmerger {

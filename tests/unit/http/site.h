@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/descriptor.h"
 #include "base/files.h"
-#include "base/process/descriptor.h"
 #include "http/server.h"
 
 namespace packmerger {

@@ -1,5 +1,5 @@
 // A comparison is known only where nothing that it depends on is another.
-#include "job/compare/comparison_key.h"
+#include "job/comparison_key.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include "base/files.h"
 #include "fixtures/models.h"
-#include "job/compare/comparison_key.h"
+#include "job/comparison_key.h"
 #include "model/stl.h"
 
 namespace packmerger {

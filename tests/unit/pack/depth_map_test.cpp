@@ -8,8 +8,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "base/random.h"
-#include "base/sentinel_heights.h"
 #include "fixtures/z_buffer.h"
+#include "model/sentinel_heights.h"
 #include "pack/columns.h"
 #include "pack/rotations.h"
 #include "unit/pack/shapes.h"

@@ -1,4 +1,5 @@
 #include "printers/estimate/estimate.h"
+#include "printers/price.h"
 
 #include <gtest/gtest.h>
 

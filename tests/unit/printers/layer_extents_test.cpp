@@ -1,12 +1,12 @@
-#include "printers/slice/layer_extents.h"
+#include "printers/layers/layer_extents.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include "base/parallel.h"
 #include "model/mesh.h"
-#include "printers/slice/layers.h"
-#include "printers/slice/slice_layers.h"
+#include "printers/layers/layers.h"
+#include "printers/layers/slice_layers.h"
 #include "shapes.h"
 
 namespace packmerger {

@@ -1,4 +1,4 @@
-#include "printers/slice/slice_layers.h"
+#include "printers/layers/slice_layers.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

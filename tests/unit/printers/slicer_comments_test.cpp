@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "printers/estimate/extruded.h"
+#include "printers/slice/extruded.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "printers/estimate/support_volume.h"
+#include "printers/layers/support_volume.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

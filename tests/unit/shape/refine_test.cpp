@@ -1,4 +1,4 @@
-#include "shape/surface/refine.h"
+#include "shape/solid/refine.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "job/arrangement.h"
+#include "job/compare/arrangement.h"
 
-#include "printers/estimate/support_volume.h"
+#include "printers/layers/support_volume.h"
 #include "printers/slice/slice.h"
 
 namespace packmerger {

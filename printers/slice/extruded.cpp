@@ -1,4 +1,4 @@
-#include "printers/estimate/extruded.h"
+#include "printers/slice/extruded.h"
 
 #include "gcode/gcode_motion.h"
 

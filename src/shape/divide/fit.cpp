@@ -1,4 +1,4 @@
-#include "shape/cut/fit.h"
+#include "shape/divide/fit.h"
 
 #include <algorithm>
 #include <cmath>

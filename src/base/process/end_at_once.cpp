@@ -1,14 +1,17 @@
-#include "base/process/remains.h"
+#include "base/process/end_at_once.h"
 
 #include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <set>
 #include <system_error>
 #include <thread>
 
 #include "base/process/process.h"
+#include "base/remains.h"
 
 namespace packmerger {
 namespace {
@@ -28,11 +31,6 @@ bool are_gone(const std::set<fs::path>& folders) {
 }
 
 }  // namespace
-
-Remains& remains() {
-  static Remains& all = *new Remains;  // outlives every thread
-  return all;
-}
 
 void end_without_remains(int exit_code) {
   Remains& all = remains();

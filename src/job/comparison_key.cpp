@@ -1,4 +1,4 @@
-#include "job/compare/comparison_key.h"
+#include "job/comparison_key.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "printers/slice/layers.h"
+#include "printers/layers/layers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "printers/slice/slice_layers.h"
+#include "printers/layers/slice_layers.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
-#include "printers/slice/layers.h"
+#include "printers/layers/layers.h"
 
 namespace packmerger {
 namespace {

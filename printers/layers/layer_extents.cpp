@@ -1,9 +1,9 @@
-#include "printers/slice/layer_extents.h"
+#include "printers/layers/layer_extents.h"
 
 #include <algorithm>
 
-#include "printers/estimate/support_volume.h"
-#include "printers/slice/layers.h"
+#include "printers/layers/layers.h"
+#include "printers/layers/support_volume.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "shape/solid/distance_grid.h"
+#include "shape/surface/distance_grid.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "firmware_io/usb/usb_library.h"
+#include "firmware_io/ports/usb_library.h"
 
 #include <array>
 #include <cstdint>
