@@ -3,6 +3,7 @@
 
 #include "model/estimate.h"
 #include "model/printer.h"
+#include "model/tray.h"
 
 namespace packmerger {
 
