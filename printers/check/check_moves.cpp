@@ -68,7 +68,8 @@ std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume,
 }
 
 GcodeRules gcode_rules(const Profile& profile) {
-  return profile.dialect == Dialect::kS3g ? GcodeRules::kGpx : GcodeRules::kMarlin;
+  const ProgramLanguage* language = profile.language();
+  return language != nullptr && language->from_gpx ? GcodeRules::kGpx : GcodeRules::kMarlin;
 }
 
 }  // namespace packmerger

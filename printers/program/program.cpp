@@ -32,8 +32,9 @@ void check_volume(const Profile& profile, std::string_view gcode) {
 
 std::optional<Program> make_program(const Profile& profile, const Tray& tray,
                                     const std::string& build_name, const Progress& progress) {
-  if (!profile.is_sliced()) return std::nullopt;
-  if (profile.dialect == Dialect::kS3g) check_s3g_start(profile);
+  const ProgramLanguage* language = profile.language();
+  if (language == nullptr) return std::nullopt;
+  if (language->from_gpx) check_s3g_start(profile);
   SlicedTray sliced = slice(profile, tray, SliceFlavour::kProgram, progress);
   check_volume(profile, sliced.gcode);
 
@@ -42,8 +43,8 @@ std::optional<Program> make_program(const Profile& profile, const Tray& tray,
     program.warnings.push_back(
         {"skirt_left_out",
          "The skirt that primes the nozzle is left out: the tray has no room for it."});
-  program.extension = profile.dialect == Dialect::kS3g ? "x3g" : "gcode";
-  if (profile.dialect == Dialect::kS3g) {
+  program.extension = language->extension;
+  if (language->from_gpx) {
     X3g x3g = to_x3g(profile, sliced.gcode, build_name, Fault::kBadProfile, progress);
     program.bytes = std::move(x3g.bytes);
     program.warnings.insert(program.warnings.end(), x3g.warnings.begin(), x3g.warnings.end());

@@ -80,7 +80,9 @@ std::string bed_shape(const Profile& profile) {
 
 std::string flavour_name(const Profile& profile, SliceFlavour flavour) {
   if (flavour == SliceFlavour::kFigures) return "marlin";
-  if (profile.dialect == Dialect::kS3g) return "sailfish";
+  const ProgramLanguage* language = profile.language();
+  if (language != nullptr && !language->gcode_flavor.empty())
+    return std::string(language->gcode_flavor);
   const auto named = profile.slicer.options.find("gcode_flavor");
   return named == profile.slicer.options.end() ? "marlin" : named->second;
 }

@@ -18,9 +18,9 @@
 #include "cli/daemon_verb.h"
 #include "cli/print_dialogue.h"
 #include "cli/verb.h"
-#include "delivery/find_port.h"
 #include "delivery/job_folder.h"
 #include "delivery/progress_file.h"
+#include "delivery/way.h"
 
 namespace packmerger::cli {
 namespace {
@@ -61,27 +61,19 @@ void stream_watched(const Arguments& arguments, const std::string& port,
   print.get();
 }
 
-void tell_interrupted_print(const fs::path& told_file, Dialect dialect) {
+void tell_interrupted_print(const fs::path& told_file, std::string_view unit) {
   const std::optional<Told> told = read_told(told_file);
   if (told && told->done < told->total)
-    fmt::print(stderr, "The print of this tray before ended at {}.\n",
-               told_text(*told, dialect == Dialect::kGcode ? "line" : "byte"));
-}
-
-std::string find_printer(const Profile& profile) {
-  const std::vector<std::string>& usb_ids = profile.link.usb_ids;
-  if (profile.is_sliced()) return find_port(connected_serial_ports(), "", usb_ids);
-  if (profile.dialect == Dialect::kUsb)
-    return stable_address(find_usb_printer(connected_devices().usb, "", usb_ids));
-  return {};
+    fmt::print(stderr, "The print of this tray before ended at {}.\n", told_text(*told, unit));
 }
 
 void stream(const Arguments& arguments, int trays) {
   const Profile profile = read_prepared_profile(arguments.folder);
-  const std::string port = arguments.port.empty() ? find_printer(profile) : arguments.port;
+  const DeliveryWay& way = way_of(profile);
+  const std::string port = arguments.port.empty() ? way.find_printer(profile) : arguments.port;
   const fs::path told_file =
       fs::path(arguments.folder) / fmt::format("sent-{}.progress", arguments.tray);
-  tell_interrupted_print(told_file, profile.dialect);
+  tell_interrupted_print(told_file, way.unit);
   stream_watched(arguments, port, told_file);
   if (arguments.json)
     return print_json(

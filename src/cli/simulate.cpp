@@ -5,13 +5,15 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/verb.h"
-#include "firmware_io/simulated/simulator.h"
+#include "delivery/way.h"
+#include "firmware_io/simulated/firmwares.h"
 #include "model/printer.h"
 
 namespace packmerger::cli {
@@ -32,50 +34,25 @@ double checked_speed(double speed) {
   throw Error(Fault::kUsage, "The speed must be 0 or more", "Give --speed 10, or --speed inf.");
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-// known: how each trait is given.
-template <typename Traits>
-Traits with_traits(Traits traits, const std::vector<std::string>& changes,
-                   const std::string& known) {
-  for (const std::string& change : changes)
-    if (!set_trait(traits, change))
-      throw Error(Fault::kUsage, "This firmware has no trait " + change, "Give " + known + ".");
-  return traits;
-}
-
-std::string marlin_traits() {
-  return "NAME=on or NAME=off of " + joined(simulated::marlin_trait_names()) +
-         "; or NAME=N, where it happens with the N-th line, of " +
-         joined(simulated::marlin_line_trait_names());
-}
-
-std::string replicator_traits() {
-  return "NAME=on or NAME=off of " + joined(simulated::replicator_trait_names());
-}
-
-// What the dialect usually has, unless another was asked for.
-std::string firmware_of(const Arguments& arguments, Dialect dialect) {
-  const std::vector<std::string> known = dialect == Dialect::kS3g
-                                             ? std::vector<std::string>{"sailfish"}
-                                             : std::vector<std::string>{"marlin-2.1", "marlin-1.1"};
-  if (arguments.firmware.empty()) return known[0];
-  if (std::find(known.begin(), known.end(), arguments.firmware) != known.end())
-    return arguments.firmware;
-  throw Error(Fault::kUsage,
-              "A machine of this profile cannot have the firmware " + arguments.firmware,
-              "Choose one of " + joined(known) + ".");
-}
-
-void simulate(const Arguments& arguments) {
-  const Profile profile = read_profile(arguments.profile);
-  if (!profile.is_sliced())
+// The one asked for, or what such a printer usually has.
+const simulated::Firmware& firmware_of(const Arguments& arguments, const Profile& profile) {
+  const std::span<const std::string_view> known = way_of(profile).simulated;
+  if (known.empty())
     throw Error(
         Fault::kUsage,
         "There is nothing to simulate for " + profile.id + ": it is given documents, not programs",
         "Choose a profile whose dialect is s3g or gcode, such as replicator or marlin.");
+  if (arguments.firmware.empty()) return simulated::firmware_named(known.front());
+  if (std::find(known.begin(), known.end(), arguments.firmware) == known.end())
+    throw Error(Fault::kUsage,
+                "A machine of this profile cannot have the firmware " + arguments.firmware,
+                fmt::format("Choose one of {}.", fmt::join(known, ", ")));
+  return simulated::firmware_named(arguments.firmware);
+}
+
+void simulate(const Arguments& arguments) {
+  const Profile profile = read_profile(arguments.profile);
+  const simulated::Firmware& firmware = firmware_of(arguments, profile);
   const SimulatorOptions options{checked_speed(arguments.speed), arguments.record};
   const Progress signals = terminal_progress();  // for interrupted()
   const ListeningAt listening = [&](const std::string& path) {
@@ -85,15 +62,34 @@ void simulate(const Arguments& arguments) {
       fmt::print("{}\n", path);
     std::fflush(stdout);
   };
-  const std::string firmware = firmware_of(arguments, profile.dialect);
-  if (profile.dialect == Dialect::kS3g) {
-    const auto traits =
-        with_traits(simulated::ReplicatorTraits(), arguments.traits, replicator_traits());
-    return run_simulated_replicator(options, traits, listening, interrupted());
+  firmware.run(options, arguments.traits, listening, interrupted());
+}
+
+// For --firmware: "marlin-2.1 (the usual one of the dialect gcode) or marlin-1.1; sailfish".
+std::string firmwares_told() {
+  std::string told;
+  for (const DialectRow& row : kDialects) {
+    const std::span<const std::string_view> known = way_of(row.dialect).simulated;
+    if (known.empty()) continue;
+    if (!told.empty()) told += "; ";
+    told += known.front();
+    if (known.size() > 1) told += fmt::format(" (the usual one of the dialect {})", row.name);
+    for (const std::string_view other : known.subspan(1)) told += fmt::format(" or {}", other);
   }
-  const auto usual = firmware == "marlin-1.1" ? simulated::marlin_1_1() : simulated::MarlinTraits();
-  const auto traits = with_traits(usual, arguments.traits, marlin_traits());
-  run_simulated_marlin(options, traits, listening, interrupted());
+  return told;
+}
+
+// For --trait: those of each firmware once.
+std::string traits_told() {
+  std::string told;
+  std::string before;
+  for (const simulated::Firmware& firmware : simulated::firmwares()) {
+    const std::string traits = firmware.traits_told();
+    if (traits == before) continue;
+    told += told.empty() ? traits : fmt::format("; for {} {}", firmware.name, traits);
+    before = traits;
+  }
+  return told;
 }
 
 }  // namespace
@@ -110,11 +106,9 @@ void add_simulate(CLI::App& program) {
       ->capture_default_str();
   verb->add_option("--record", arguments->record, "A file for every executed command, one a line")
       ->type_name("FILE");
-  verb->add_option("--firmware", arguments->firmware,
-                   "sailfish; or marlin-2.1 (the usual one of the dialect gcode) or marlin-1.1");
+  verb->add_option("--firmware", arguments->firmware, firmwares_told());
   verb->add_option("--trait", arguments->traits,
-                   "One way in which the firmware differs: " + marlin_traits() + "; for sailfish " +
-                       replicator_traits())
+                   "One way in which the firmware differs: " + traits_told())
       ->allow_extra_args(false);
   verb->add_flag("--json", arguments->json, "The first line as JSON");
   verb->callback([arguments] { simulate(*arguments); });

@@ -55,22 +55,4 @@ std::string job_file_name(std::string_view given) {
   return name;
 }
 
-void check_program_kind(const Profile& profile, FileKind kind) {
-  switch (profile.dialect) {
-    case Dialect::kHandoff:
-      throw Error(Fault::kBadInput, "The " + profile.name + " takes no program over a cable",
-                  "Drop the model itself: it is prepared, and handed over as a document.");
-    case Dialect::kUsb:
-      throw Error(Fault::kBadInput, "The " + profile.name + " is sent documents, and no programs",
-                  "Drop the model itself: it is prepared for this printer.");
-    case Dialect::kGcode:
-      if (kind == FileKind::kX3g)
-        throw Error(Fault::kBadInput, "The " + profile.name + " speaks G-code, and this is x3g",
-                    "Drop the G-code that the .x3g was made of.");
-      return;
-    case Dialect::kS3g:
-      return;
-  }
-}
-
 }  // namespace packmerger

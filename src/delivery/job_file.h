@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "model/printer.h"
-
 namespace packmerger {
 
 enum class FileKind {
@@ -32,9 +30,5 @@ std::vector<std::string_view> job_file_endings();
 // not hidden, without characters that cannot be shown, at most 200 bytes. Throws Error{kBadInput}
 // where nothing is left of it, or its ending is of no kind above.
 std::string job_file_name(std::string_view given);
-
-// Throws Error{kBadInput}, in words for people, when a printer of this profile cannot be sent a
-// program of this kind. G-code for dialect s3g can: it is converted.
-void check_program_kind(const Profile& profile, FileKind kind);
 
 }  // namespace packmerger

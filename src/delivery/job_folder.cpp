@@ -126,8 +126,8 @@ std::string doubt_about(const PreparedJob& job) {
 
 std::string tray_file(const Profile& profile, int tray) {
   const std::string number = tray > 1 ? "-" + std::to_string(tray) : "";
-  if (profile.dialect == Dialect::kGcode) return "program" + number + ".gcode";
-  if (profile.dialect == Dialect::kS3g) return "program" + number + ".x3g";
+  if (const ProgramLanguage* language = profile.language())
+    return "program" + number + "." + std::string(language->extension);
   return "tray" + number + (profile.document == HandoffDocument::kTrayStl ? ".stl" : ".3mf");
 }
 

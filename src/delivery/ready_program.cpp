@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "delivery/job_file.h"
+#include "delivery/way.h"
 #include "firmware_io/gcode/gcode.h"
 #include "firmware_io/gcode/gcode_link.h"
 #include "firmware_io/gcode/gcode_time_marks.h"
@@ -94,7 +95,8 @@ void convert(ReadyProgram& program, const std::string& gcode, const Progress& pr
 }
 
 void take_gcode(ReadyProgram& program, std::string gcode, const Progress& progress) {
-  const bool converts = program.profile.dialect == Dialect::kS3g;
+  const ProgramLanguage& language = *program.profile.language();
+  const bool converts = language.from_gpx;
   if (!converts) check_gcode(gcode);
   progress.report("checking", 0.3);
   judge_moves(program, gcode);
@@ -103,7 +105,7 @@ void take_gcode(ReadyProgram& program, std::string gcode, const Progress& progre
   program.made_by = told.made_by;
   take_time(program, told, gcode);
   take_material(program, told, gcode);
-  program.extension = converts ? "x3g" : "gcode";
+  program.extension = language.extension;
   if (converts)
     convert(program, gcode, progress);
   else
@@ -114,7 +116,7 @@ void take_x3g(ReadyProgram& program, std::string x3g) {
   check_x3g(x3g);
   program.estimate.source = EstimateSource::kMoves;
   program.estimate.time_s = seconds_of_x3g(x3g);
-  program.extension = "x3g";
+  program.extension = program.profile.language()->extension;
   program.bytes = std::move(x3g);
 }
 
@@ -126,7 +128,7 @@ ReadyProgram read_ready_program(const Profile& profile, const fs::path& file,
   program.file = file.filename().string();
   program.profile = profile;
   const FileKind kind = kind_of_file(program.file);
-  check_program_kind(profile, kind);
+  way_of(profile).check_program(profile, kind);
   progress.report("checking", 0);
   std::string bytes = read_file(file, kMostBytes);
   program.sha256 = sha256_hex(bytes);

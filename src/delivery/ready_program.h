@@ -13,7 +13,7 @@ namespace packmerger {
 // fdm.start_s is added, as to a slicer's figures. Material comes from the comments, or from what is
 // extruded; an x3g program tells none. A move that leaves the build volume, or cannot be judged, is
 // the warning `moves_not_judged`; what a Replicator has nothing like, `left_out`. Throws
-// Error{kBadInput} where the printer cannot be sent such a program (delivery/job_file.h) or the
+// Error{kBadInput} where the printer cannot be sent such a program (delivery/way.h) or the
 // wire cannot carry it (firmware_io/gcode/gcode_link.h, s3g_link.h), what to_x3g() throws
 // (printers/program/x3g.h), Error{kNoInput}, Error{kInterrupted}.
 ReadyProgram read_ready_program(const Profile& profile, const fs::path& file,

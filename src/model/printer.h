@@ -11,16 +11,16 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "model/dialect.h"
 
 namespace packmerger {
 
 enum class Technology { kPolyjet, kFdm };
-enum class Dialect { kHandoff, kGcode, kS3g, kUsb };  // what the printer is given
-enum class Objective { kPaper, kPrinter, kHeight };   // what the packer minimises
-enum class Placement { kDrop, kAnywhere };            // how parts come to their places
-enum class Segmentation { kPaper, kPrinter };         // how the shell is divided
-enum class Origin { kFrontLeft, kCenter };            // of the machine's own coordinates
-enum class FdmTime { kDeposition, kToolpath };        // which FDM estimator fits the machine
+enum class Objective { kPaper, kPrinter, kHeight };  // what the packer minimises
+enum class Placement { kDrop, kAnywhere };           // how parts come to their places
+enum class Segmentation { kPaper, kPrinter };        // how the shell is divided
+enum class Origin { kFrontLeft, kCenter };           // of the machine's own coordinates
+enum class FdmTime { kDeposition, kToolpath };       // which FDM estimator fits the machine
 enum class HandoffDocument { kTrayStl, kTray3mf };
 
 // The geometry of a job: sections 3 to 6 of the paper.
@@ -147,8 +147,9 @@ struct Profile {
   SlicerSettings slicer;
   LinkSettings link;
 
-  // Whether a program is made for it; the others are given the tray as a document.
-  bool is_sliced() const { return dialect == Dialect::kGcode || dialect == Dialect::kS3g; }
+  // Of the program that is made for it; nullptr: it is given the tray as a document.
+  const ProgramLanguage* language() const { return row_of(dialect).language; }
+  bool is_sliced() const { return language() != nullptr; }
   Vec3 build() const { return {build_mm[0], build_mm[1], build_mm[2]}; }
 };
 

@@ -1,27 +1,17 @@
 // Which printers are there.
-#include <algorithm>
-
 #include "daemon/jobs/job_manager.h"
 #include "delivery/find_port.h"
+#include "delivery/way.h"
 #include "firmware_io/ports/port.h"
 
 namespace packmerger {
 
 std::optional<bool> JobManager::connected(const PrinterConfig& printer) const {
-  if (printer.hands_over()) return std::nullopt;
   if (is_tcp(printer.port)) {
     const auto found = reached_.find(printer.name);
     return found == reached_.end() ? std::nullopt : std::optional(found->second);
   }
-  if (!is_usb(printer.port)) {
-    std::error_code ignored;
-    return std::filesystem::exists(printer.port, ignored);
-  }
-  if (!devices_) return std::nullopt;
-  const auto is_this = [&](const auto& device) { return is_at(printer.port, device); };
-  return printer.abilities.is_sliced()
-             ? std::any_of(devices_->serial.begin(), devices_->serial.end(), is_this)
-             : std::any_of(devices_->usb.begin(), devices_->usb.end(), is_this);
+  return way_of(printer.abilities).is_connected(printer.port, devices_);
 }
 
 // On a port whose name does not stay, once for each that is set: at the start, or by a reload.

@@ -128,9 +128,8 @@ void JobManager::note_told(JobRecord& job) const {
 std::string JobManager::with_told(const JobRecord& job, const std::string& reason) const {
   const PrinterConfig* printer = config_.printer(job.printer);
   if (job.told_total == 0 || printer == nullptr) return reason;
-  const bool is_gcode = printer->abilities.dialect == Dialect::kGcode;
   const Told told{static_cast<std::size_t>(job.told), static_cast<std::size_t>(job.told_total)};
-  return reason + ", told up to " + told_text(told, is_gcode ? "line" : "byte");
+  return reason + ", told up to " + told_text(told, way_of(printer->abilities).unit);
 }
 
 void JobManager::sent(JobRecord job, const SendEnded& event) {

@@ -8,6 +8,7 @@
 #include "daemon/workers/workers.h"
 #include "delivery/job_file.h"
 #include "delivery/job_folder.h"
+#include "delivery/way.h"
 
 namespace packmerger {
 namespace {
@@ -22,7 +23,7 @@ void JobManager::check_takes(const PrinterConfig& printer, const std::string& na
   if (printer.is_auto())
     throw Error(Fault::kBadInput, "A program is made for one printer",
                 "Give it to that printer, and only models to " + printer.name + ".");
-  check_program_kind(printer.abilities, kind_of_file(name));
+  way_of(printer.abilities).check_program(printer.abilities, kind_of_file(name));
 }
 
 // From the general to the particular: the daemon's settings, the printer's, those of the entry that

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "delivery/way.h"
 #include "model/printer.h"
 #include "notify/notice.h"
 
@@ -75,8 +76,8 @@ struct PrinterConfig {
   std::string profile;                   // an id, the absolute path of a TOML file, or "auto"
   Profile abilities;                     // that profile, as it read at the start
   std::filesystem::path folder;          // the watched folder
-  std::string port;                      // dialects gcode, s3g and usb
-  std::filesystem::path handoff_folder;  // dialect handoff
+  std::string port;                      // unless jobs are handed over
+  std::filesystem::path handoff_folder;  // where they are
   Approve approve = Approve::kAsk;
   std::optional<Prefer> prefer;  // with profile "auto", and only there
   bool simulated = false;        // no bed has to be cleared
@@ -84,8 +85,8 @@ struct PrinterConfig {
 
   // Whether it is no printer but stands for all that are: it is sent nothing.
   bool is_auto() const { return profile == kAutoProfile; }
-  bool hands_over() const { return abilities.dialect == Dialect::kHandoff; }
-  bool has_bed() const { return !simulated && !hands_over(); }
+  bool hands_over() const { return way_of(abilities).hands_over; }
+  bool has_bed() const { return !simulated && way_of(abilities).has_bed; }
 };
 
 struct DaemonConfig {

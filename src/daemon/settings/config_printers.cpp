@@ -9,6 +9,7 @@
 #include "daemon/settings/config_sections.h"
 #include "daemon/settings/model_options.h"
 #include "delivery/find_port.h"
+#include "delivery/way.h"
 
 namespace packmerger {
 namespace {
@@ -73,22 +74,14 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   // gluing parts of a plastic thread costs more than it saves, most often
   if (printer.abilities.technology == Technology::kFdm && !printer.options.variant)
     printer.options.variant = "cheapest";
-  if (printer.hands_over() && printer.handoff_folder.empty())
-    refuse(file, line, table + " needs the key handoff_folder: this printer takes no job by wire");
-  if (printer.hands_over() && !printer.port.empty())
-    refuse(file, line, table + " cannot have a port: this printer takes no job by wire");
-  if (!printer.hands_over() && printer.port.empty())
-    refuse(file, line, table + " needs the key port");
   try {
     check_address(printer.port);
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what() + ". " + error.hint());
   }
-  if (printer.abilities.dialect == Dialect::kUsb && !is_usb(printer.port))
-    refuse(file, line,
-           table + " needs a port usb:VID:PID or usb:VID:PID:SERIAL: its dialect is usb");
-  if (!printer.hands_over() && !printer.handoff_folder.empty())
-    refuse(file, line, table + " cannot have a handoff_folder: this printer is sent its job");
+  if (const auto fault =
+          way_of(printer.abilities).fault_of_settings(printer.port, printer.handoff_folder))
+    refuse(file, line, table + " " + *fault);
 }
 
 }  // namespace

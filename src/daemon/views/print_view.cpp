@@ -14,11 +14,6 @@ json heaters_view(const PrintReport& print) {
   return heaters;
 }
 
-// What its progress is counted in.
-std::string_view unit_of(const PrinterConfig* printer) {
-  return printer != nullptr && printer->abilities.dialect == Dialect::kGcode ? "line" : "byte";
-}
-
 }  // namespace
 
 double fraction_of(const PrintReport& report) {
@@ -32,7 +27,7 @@ json print_view(const LiveJob* live, const PrinterConfig* printer) {
           {"fraction", fraction_of(live->print)},
           {"done", live->print.done},
           {"total", live->print.total},
-          {"unit", unit_of(printer)},
+          {"unit", printer == nullptr ? "byte" : way_of(printer->abilities).unit},
           {"text", live->print.text},
           {"choices", live->print.choices},
           {"heaters", heaters_view(live->print)},

@@ -2,6 +2,7 @@
 #include "daemon/workers/print_clock.h"
 #include "daemon/workers/worker.h"
 #include "delivery/send.h"
+#include "delivery/way.h"
 
 namespace packmerger {
 namespace {
@@ -35,7 +36,7 @@ SendEnded send(const SendOrder& order, Queue<Event>& events, const PrinterConfig
               order.tray_files);
     clock.end(steady_now_s());
     // a document was only taken: how long it is printed, the printer does not tell
-    if (!printer.abilities.is_sliced()) return {order.job, SendOutcome::kDone, {}, ""};
+    if (!way_of(printer.abilities).tells_end) return {order.job, SendOutcome::kDone, {}, ""};
     return {order.job, SendOutcome::kDone, {}, "", clock.printed_s(), clock.paused_s()};
   } catch (const Error& error) {
     return {order.job,

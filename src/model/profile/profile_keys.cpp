@@ -15,6 +15,30 @@ ChoiceKey choice(Enum& member, std::vector<std::string> names) {
           [&member](std::size_t index) { member = static_cast<Enum>(index); }};
 }
 
+std::vector<std::string> dialect_names() {
+  std::vector<std::string> names;
+  for (const DialectRow& row : kDialects) names.emplace_back(row.name);
+  return names;
+}
+
+std::string dialect_meaning() {
+  std::string meaning = "What the printer is given: ";
+  for (const DialectRow& row : kDialects) {
+    if (&row != kDialects.data()) meaning += &row == &kDialects.back() ? ", or " : ", ";
+    meaning += row.given;
+  }
+  return meaning + ".";
+}
+
+// "\"gcode\" or \"s3g\"": those that a program is made for.
+std::string sliced_dialects() {
+  std::string names;
+  for (const DialectRow& row : kDialects)
+    if (row.language != nullptr)
+      names += (names.empty() ? "\"" : " or \"") + std::string(row.name) + "\"";
+  return names;
+}
+
 bool all(std::string_view text, std::string_view allowed) {
   return text.find_first_not_of(allowed) == std::string_view::npos;
 }
@@ -80,10 +104,7 @@ void add_machine(Profile& p, std::vector<Key>& keys) {
        {"name", TextKey{&p.name, one_line()}, "", "The machine's name, for people.", true},
        {"technology", choice(p.technology, {"polyjet", "fdm"}), "",
         "Which estimator fits: jetted photopolymer in full support, or extruded filament.", true},
-       {"dialect", choice(p.dialect, {"handoff", "gcode", "s3g", "usb"}), "",
-        "What the printer is given: a document for its maker's program, G-code, x3g, or a document "
-        "over USB (printer class).",
-        true},
+       {"dialect", choice(p.dialect, dialect_names()), "", dialect_meaning(), true},
        {"document", choice(p.document, {"tray_stl", "tray_3mf"}), "",
         "The document that dialects handoff and usb deliver: tray.stl or tray.3mf."},
        {"build_mm", Numbers3Key{&p.build_mm, above(0, 2000)}, "mm",
@@ -311,10 +332,11 @@ std::string missing_for_abilities(const Profile& profile) {
     return "fdm.deposition_cm3_h must be above 0 where fdm.time is \"deposition\"";
   if (!profile.is_sliced()) return {};
   if (profile.slicer.start_gcode.empty() || profile.slicer.end_gcode.empty())
-    return "slicer.start_gcode and slicer.end_gcode are required where dialect is \"gcode\" or "
-           "\"s3g\"";
-  if (profile.dialect == Dialect::kS3g && profile.slicer.gpx_machine.empty())
-    return "slicer.gpx_machine is required where dialect is \"s3g\"";
+    return "slicer.start_gcode and slicer.end_gcode are required where dialect is " +
+           sliced_dialects();
+  if (profile.language()->from_gpx && profile.slicer.gpx_machine.empty())
+    return "slicer.gpx_machine is required where dialect is \"" +
+           std::string(row_of(profile.dialect).name) + "\"";
   return {};
 }
 

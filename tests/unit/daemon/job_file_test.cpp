@@ -4,6 +4,7 @@
 #include <rapidcheck.h>
 
 #include "base/error.h"
+#include "delivery/way.h"
 #include "fixtures/fault_of.h"
 
 namespace packmerger {
@@ -65,18 +66,22 @@ TEST(JobFile, ALongNameIsNotCutInsideACharacter) {
 }
 
 TEST(JobFile, PrintersRefuseWhatTheyCannotExecute) {
-  const auto fault = [](const char* profile, FileKind kind) {
-    return fault_of([&] { check_program_kind(read_profile(profile), kind); });
+  const auto fault = [](const Profile& profile, FileKind kind) {
+    return fault_of([&] { way_of(profile).check_program(profile, kind); });
   };
-  EXPECT_EQ(fault("objet30", FileKind::kGcode), Fault::kBadInput);
-  EXPECT_EQ(fault("uprint", FileKind::kX3g), Fault::kBadInput);
-  EXPECT_EQ(fault("marlin", FileKind::kX3g), Fault::kBadInput);
-  EXPECT_NO_THROW(check_program_kind(read_profile("marlin"), FileKind::kGcode));
-  EXPECT_NO_THROW(check_program_kind(read_profile("replicator"), FileKind::kX3g));
-  EXPECT_NO_THROW(check_program_kind(read_profile("replicator"), FileKind::kGcode));
+  EXPECT_EQ(fault(read_profile("objet30"), FileKind::kGcode), Fault::kBadInput);
+  EXPECT_EQ(fault(read_profile("uprint"), FileKind::kX3g), Fault::kBadInput);
+  EXPECT_EQ(fault(read_profile("marlin"), FileKind::kX3g), Fault::kBadInput);
+  const auto takes = [](const char* id, FileKind kind) {
+    const Profile profile = read_profile(id);
+    EXPECT_NO_THROW(way_of(profile).check_program(profile, kind)) << id;
+  };
+  takes("marlin", FileKind::kGcode);
+  takes("replicator", FileKind::kX3g);
+  takes("replicator", FileKind::kGcode);
   Profile usb = read_profile("objet30");
   usb.dialect = Dialect::kUsb;
-  EXPECT_EQ(fault_of([&] { check_program_kind(usb, FileKind::kGcode); }), Fault::kBadInput);
+  EXPECT_EQ(fault(usb, FileKind::kGcode), Fault::kBadInput);
 }
 
 }  // namespace
