@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/names.h"
 #include "cli/checks.h"
+#include "model/file_format.h"
 
 namespace packmerger::cli {
 namespace {
@@ -19,7 +20,8 @@ constexpr int kMostCopies = 1000;
 }  // namespace
 
 void add_plan_options(CLI::App& verb, PlanArguments& arguments) {
-  verb.add_option("MODEL", arguments.models, "STL, OBJ, PLY, OFF or 3MF; several share the tray")
+  verb.add_option("MODEL", arguments.models,
+                  model_format_names(" or ") + "; several share the tray")
       ->required();
   verb.add_option("--copies", arguments.copies, "of each model; they share the trays")
       ->check(whole_number(1, kMostCopies))

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "delivery/job_file.h"
 #include "delivery/way.h"
 #include "firmware_io/gcode/gcode.h"
 #include "firmware_io/gcode/gcode_link.h"
@@ -16,6 +15,7 @@
 #include "firmware_io/s3g/s3g_time_marks.h"
 #include "gcode/program_text.h"
 #include "job/compare/comparison_table.h"
+#include "model/file_format.h"
 #include "printers/check/check_moves.h"
 #include "printers/price.h"
 #include "printers/program/x3g.h"

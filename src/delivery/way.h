@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "base/files.h"
-#include "delivery/job_file.h"
 #include "firmware_io/ports/devices.h"
 #include "firmware_io/print_state.h"
+#include "model/file_format.h"
 #include "model/printer.h"
 
 namespace packmerger {

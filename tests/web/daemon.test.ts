@@ -62,7 +62,7 @@ test('refusals are told in the daemon’s words, and in some words whatever come
 });
 
 test('what the daemon would refuse is refused before it is sent', () => {
-  const rules = { most_bytes: 1 << 20, endings: ['.stl', '.obj'] };
+  const rules = { most_bytes: 1 << 20, endings: ['.stl', '.obj'], formats: ['STL', 'OBJ'] };
   expect(forbids({ name: 'A.STL', size: 5 }, rules)).toBeNull();
   expect(forbids({ name: 'a.exe', size: 5 }, rules)?.status).toBe(415);
   expect(forbids({ name: 'a.stl.exe', size: 5 }, rules)?.hint).toContain('STL or OBJ');

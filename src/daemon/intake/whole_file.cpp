@@ -11,6 +11,8 @@
 #include <fstream>
 #include <string>
 
+#include "model/file_format.h"
+
 namespace packmerger {
 namespace {
 
@@ -78,11 +80,11 @@ Whole file_is_whole(const std::filesystem::path& path) {
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(path, failed);
   if (failed || size == 0) return Whole::kNo;
-  const std::string extension = lower(path.extension().string());
-  if (extension != ".stl" && extension != ".3mf") return Whole::kUnknown;
+  const FileFormat* format = format_of_name(path.filename().string());
+  if (format == nullptr || format->end == FileEnd::kNotTold) return Whole::kUnknown;
   std::ifstream file(path, std::ios::binary);
   const bool whole =
-      file && (extension == ".stl" ? is_whole_stl(file, size) : is_whole_zip(file, size));
+      file && (format->end == FileEnd::kStl ? is_whole_stl(file, size) : is_whole_zip(file, size));
   return whole ? Whole::kYes : Whole::kNo;
 }
 

@@ -11,9 +11,8 @@ enum class Whole {
   kUnknown,  // a format that does not tell
 };
 
-// Binary STL: the length its count of triangles asks for. ASCII STL: the last line is an endsolid.
-// 3MF: the ZIP end record is there and agrees with the length. By the name's extension, as the
-// readers do. Reads at most 66 kB. A file that cannot be read is kNo.
+// By the end that its format has (FileEnd of model/file_format.h). Reads at most 66 kB. A file that
+// cannot be read is kNo.
 Whole file_is_whole(const std::filesystem::path& path);
 
 // Whether another process has the file open for writing, as far as the kernel tells (it does for

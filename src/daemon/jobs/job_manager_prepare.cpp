@@ -6,9 +6,9 @@
 #include "daemon/jobs/job_manager.h"
 #include "daemon/settings/model_options.h"
 #include "daemon/workers/workers.h"
-#include "delivery/job_file.h"
 #include "delivery/job_folder.h"
 #include "delivery/way.h"
+#include "model/file_format.h"
 
 namespace packmerger {
 namespace {

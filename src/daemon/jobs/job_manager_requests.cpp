@@ -10,6 +10,7 @@
 #include "delivery/child_json.h"
 #include "delivery/job_file.h"
 #include "job/compare/advice.h"
+#include "model/file_format.h"
 
 namespace packmerger {
 namespace {

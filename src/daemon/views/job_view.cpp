@@ -10,9 +10,9 @@
 #include "daemon/views/status_text.h"
 #include "daemon/views/trouble_view.h"
 #include "delivery/child_json.h"
-#include "delivery/job_file.h"
 #include "job/compare/advice.h"
 #include "model/estimate.h"
+#include "model/file_format.h"
 #include "tray/comparison_json.h"
 
 namespace packmerger {

@@ -6,6 +6,7 @@
 #include "daemon/local/api.h"
 #include "daemon/web/web_guard.h"
 #include "delivery/job_file.h"
+#include "model/file_format.h"
 
 namespace packmerger {
 namespace {
@@ -43,8 +44,7 @@ int http_status_of(int fault) {
 
 std::optional<HttpReply> unwelcome(const std::string& given_name) {
   if (kind_of_file(given_name) != FileKind::kUnknown) return std::nullopt;
-  return web_error(415, Fault::kBadInput, "This is nothing that PackMerger takes",
-                   "Send a model (STL, OBJ, PLY, OFF, 3MF) or a program (G-code, x3g).");
+  return web_error(415, Fault::kBadInput, kNotTaken, what_is_taken());
 }
 
 HttpReply LoopProxy::ask(std::variant<std::string, UploadedJob> question) const {

@@ -11,7 +11,7 @@
 #include "daemon/web/doors/door.h"
 #include "daemon/web/doors/doors.h"
 #include "daemon/web/web_routes.h"
-#include "delivery/job_file.h"
+#include "model/file_format.h"
 
 namespace packmerger {
 namespace {
@@ -161,10 +161,19 @@ HttpReply Web::upload(HttpRequest& request) {
 }
 
 HttpReply Web::upload_rules() const {
+  json endings = json::array();
+  json formats = json::array();
+  for (const FileFormat& format : file_formats()) {
+    endings.push_back(format.ending);
+    if (std::find(formats.begin(), formats.end(), format.name) == formats.end())
+      formats.push_back(format.name);
+  }
   HttpReply reply;
-  reply.body =
-      json{{"most_bytes", config_.most_upload_bytes}, {"endings", job_file_endings()}}.dump() +
-      "\n";
+  reply.body = json{{"most_bytes", config_.most_upload_bytes},
+                    {"endings", std::move(endings)},
+                    {"formats", std::move(formats)}}
+                   .dump() +
+               "\n";
   return reply;
 }
 

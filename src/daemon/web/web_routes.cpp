@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "daemon/web/doors/doors.h"
+#include "model/file_format.h"
 
 namespace packmerger {
 namespace {
@@ -114,7 +115,7 @@ bool is_job_file(const std::string& name) {
 }
 
 std::string media_type(const std::string& name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kTypes = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kTypes = {{
       {".html", "text/html; charset=utf-8"},
       {".js", "text/javascript; charset=utf-8"},
       {".css", "text/css; charset=utf-8"},
@@ -124,14 +125,13 @@ std::string media_type(const std::string& name) {
       {".woff2", "font/woff2"},
       {".json", "application/json"},
       {".glb", "model/gltf-binary"},
-      {".stl", "model/stl"},
-      {".3mf", "model/3mf"},
-      {".gcode", "text/x.gcode"},
       {".toml", "application/toml"},
       {".txt", "text/plain; charset=utf-8"},
   }};
   for (const auto& [ending, type] : kTypes)
     if (name.ends_with(ending)) return std::string(type);
+  const FileFormat* format = format_of_name(name);
+  if (format != nullptr && !format->media_type.empty()) return std::string(format->media_type);
   return "application/octet-stream";
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "model/file_format.h"
 #include "shape/read/formats.h"
 #include "shape/read/utf16.h"
 
@@ -65,21 +66,6 @@ void refuse_foreign_files(std::string_view bytes) {
     if (bytes.starts_with(signature.bytes)) refuse_foreign(signature.what, signature.hint);
 }
 
-// Empty where neither content nor extension tell.
-std::string format_of(std::string_view bytes, const std::string& extension) {
-  if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06")) return "3mf";
-  if (has_binary_stl_length(bytes)) return "stl";
-  std::string_view text = bytes.substr(0, 1 << 12);
-  const std::string_view first = take_word(text);
-  if (first == "ply") return "ply";
-  if (first == "OFF" || first == "COFF" || first == "NOFF" || first == "CNOFF" || first == "STOFF")
-    return "off";
-  if (first == "solid" && extension != "obj") return "stl";
-  for (const char* known : {"stl", "obj", "ply", "off", "3mf"})
-    if (extension == known) return known;
-  return "";
-}
-
 // "2 modifiers and 1 support object"; empty where nothing was left out.
 std::string told(const LeftOut3mf& left_out) {
   struct Kind {
@@ -101,6 +87,68 @@ std::string told(const LeftOut3mf& left_out) {
       text += (text.empty() ? "" : " and ") + std::to_string(kind.count) + " " +
               (kind.count == 1 ? kind.one : kind.many);
   return text;
+}
+
+// What decides a file's format.
+struct Beginning {
+  std::string_view bytes;
+  std::string_view first_word;
+  std::string_view extension;  // small letters, without its dot
+
+  bool begins(std::string_view with) const { return bytes.starts_with(with); }
+};
+
+struct MeshReader {
+  std::string_view format;
+  bool has_unit;  // the file says its unit, and what is read is in mm
+  // Whether the bytes show the format; nullptr: it is known by its extension only.
+  bool (*is_shown)(const Beginning& file);
+  void (*read)(std::string_view bytes, const Progress& progress, ModelFile& file);
+};
+
+template <TriangleSoup (*reader)(std::string_view, const Progress&)>
+void read_soup(std::string_view bytes, const Progress& progress, ModelFile& file) {
+  file.soup = reader(bytes, progress);
+}
+
+void read_parts(std::string_view bytes, const Progress& progress, ModelFile& file) {
+  Parts3mf parts = read_3mf(bytes, progress);
+  file.soup = std::move(parts.soup);
+  file.left_out = told(parts.left_out);
+}
+
+bool is_off(const Beginning& file) {
+  constexpr std::array<std::string_view, 5> kWords = {"OFF", "COFF", "NOFF", "CNOFF", "STOFF"};
+  return std::find(kWords.begin(), kWords.end(), file.first_word) != kWords.end();
+}
+
+// In the order in which they are asked. A format's ending and name stand in model/file_format.
+constexpr std::array<MeshReader, 5> kReaders = {{
+    {"3mf", true,
+     [](const Beginning& file) { return file.begins("PK\x03\x04") || file.begins("PK\x05\x06"); },
+     read_parts},
+    {"stl", false,
+     [](const Beginning& file) {
+       return has_binary_stl_length(file.bytes) ||
+              (file.first_word == "solid" && file.extension != "obj");
+     },
+     read_soup<read_stl>},
+    {"ply", false, [](const Beginning& file) { return file.first_word == "ply"; },
+     read_soup<read_ply>},
+    {"off", false, is_off, read_soup<read_off>},
+    {"obj", false, nullptr, read_soup<read_obj>},
+}};
+
+const MeshReader& reader_of(std::string_view bytes, const std::string& extension) {
+  Beginning file{bytes, {}, extension};
+  std::string_view text = bytes.substr(0, 1 << 12);
+  file.first_word = take_word(text);
+  for (const MeshReader& reader : kReaders)
+    if (reader.is_shown != nullptr && reader.is_shown(file)) return reader;
+  for (const MeshReader& reader : kReaders)
+    if (reader.format == extension) return reader;
+  throw Error(Fault::kBadInput, "The model file's format is not known",
+              "Give an " + model_format_names(" or ") + " file.");
 }
 
 void check(const TriangleSoup& soup) {
@@ -139,20 +187,10 @@ ModelFile read_model_bytes(std::string_view bytes, std::string_view extension,
     if (bytes.starts_with(kUtf8Mark)) bytes.remove_prefix(kUtf8Mark.size());
   }
   ModelFile file;
-  file.format = format_of(bytes, lower_case(extension));
-  if (file.format == "stl") file.soup = read_stl(bytes, progress);
-  if (file.format == "obj") file.soup = read_obj(bytes, progress);
-  if (file.format == "ply") file.soup = read_ply(bytes, progress);
-  if (file.format == "off") file.soup = read_off(bytes, progress);
-  if (file.format == "3mf") {
-    Parts3mf parts = read_3mf(bytes, progress);
-    file.soup = std::move(parts.soup);
-    file.left_out = told(parts.left_out);
-  }
-  if (file.format.empty())
-    throw Error(Fault::kBadInput, "The model file's format is not known",
-                "Give an STL, OBJ, PLY, OFF or 3MF file.");
-  file.has_unit = file.format == "3mf";
+  const MeshReader& reader = reader_of(bytes, lower_case(extension));
+  file.format = reader.format;
+  file.has_unit = reader.has_unit;
+  reader.read(bytes, progress, file);
   check(file.soup);
   progress.report("reading", 1);
   return file;

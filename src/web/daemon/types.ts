@@ -166,7 +166,8 @@ export interface Start {
 
 export interface UploadRules {
   most_bytes: number;
-  endings: string[];
+  endings: string[];  // of names
+  formats: string[];  // as people call them
 }
 
 export type Vec3 = [number, number, number];

@@ -7,7 +7,7 @@ export function forbids(file: { name: string; size: number }, rules: UploadRules
   if (rules === null) return null;
   const name = file.name.toLowerCase();
   if (!rules.endings.some((ending) => name.endsWith(ending)))
-    return new Refusal(415, 'This is no file that PackMerger takes', `It takes ${endingsInWords(rules)}.`);
+    return new Refusal(415, 'This is no file that PackMerger takes', `It takes ${formatsInWords(rules)}.`);
   if (file.size > rules.most_bytes)
     return new Refusal(413, `The file has ${bytes(file.size)}, and ${bytes(rules.most_bytes)} are the most`,
                        'Raise web.most_upload_bytes in the settings, or make the model smaller.');
@@ -15,11 +15,7 @@ export function forbids(file: { name: string; size: number }, rules: UploadRules
   return null;
 }
 
-const SHORT_FORMS = ['.gco', '.g', '.s3g', '.gcode.3mf'];  // of what is named already
-const NAMES: Record<string, string> = { '.gcode': 'G-code', '.x3g': 'x3g' };
-
-export function endingsInWords(rules: UploadRules | null): string {
-  const endings = (rules?.endings ?? ['.stl', '.obj', '.ply', '.off', '.3mf']).filter((one) => !SHORT_FORMS.includes(one));
-  const names = endings.map((one) => NAMES[one] ?? one.slice(1).toUpperCase());
-  return `${names.slice(0, -1).join(', ')} or ${names.at(-1)}`;
+export function formatsInWords(rules: UploadRules | null): string {
+  if (rules === null) return 'model';
+  return `${rules.formats.slice(0, -1).join(', ')} or ${rules.formats.at(-1)}`;
 }

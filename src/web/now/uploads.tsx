@@ -2,7 +2,7 @@
 import { useRef, useState } from 'preact/hooks';
 import { sendFiles } from './send_files';
 import { dismiss } from '../daemon/upload';
-import { endingsInWords } from '../daemon/upload_rules';
+import { formatsInWords } from '../daemon/upload_rules';
 import type { Printer } from '../daemon/types';
 import type { Known, Sending } from '../store';
 import { Bar, Button } from '../ui/bits';
@@ -16,7 +16,7 @@ export function Uploads({ known }: { known: Known }) {
       <div class="send-words">
         <h2 id="send-title"><Icon name="upload" />Send a model</h2>
         <p class="quiet-text">
-          Drop {endingsInWords(rules)} files anywhere on this page, or choose them here.
+          Drop {formatsInWords(rules)} files anywhere on this page, or choose them here.
           {rules ? ` ${bytes(rules.most_bytes)} each at most.` : ''}
         </p>
       </div>
