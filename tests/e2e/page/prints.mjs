@@ -75,7 +75,7 @@ describe('a print', { skip: missing }, () => {
   before(async () => {
     shop = await Workshop.open({
       printers: PRINTERS, files: { 'ender.toml': ENDER }, settings: '[prepare]\nbudget_s = 2',
-      machines: { ender: ['ender.toml', '--speed', '40'] } });
+      machines: { ender: ['ender.toml', '--speed', '100'] } });
     model = bunny(shop.folder);
     browser = await Browser.open();
     page = await browser.visit(shop.base, { key: shop.key });
