@@ -1,4 +1,5 @@
-// Lines of G-code over a port, and the first words with a printer.
+// Lines of G-code over a port (Marlin's N, checksum and ok; docs/PROTOCOLS), and the first words
+// with a printer.
 #pragma once
 
 #include <optional>

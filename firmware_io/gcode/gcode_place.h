@@ -1,4 +1,5 @@
-// Where the head is after each line given, in the words of M114, for printers that count no lines.
+// Where the head is after each line given, in the words of M114 (Marlin's and RepRapFirmware's),
+// for printers that count no lines.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// One packet, one reply: the s3g exchange over a port, and which answers end a print.
+// One packet, one reply: the s3g exchange (MakerBot, s3g protocol specification) over a port,
+// and which answers end a print.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// A ZIP archive in memory, read as nobody trusts it: no name in it is ever used as a path on disk.
+// A ZIP archive (PKWARE APPNOTE; libzip) in memory, read as nobody trusts it: no name in it is
+// ever used as a path on disk.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The arcs of G2 and G3, seen from above, mm and radians.
+// The arcs of G2 and G3 as Marlin and gpx read them, seen from above, mm and radians.
 #pragma once
 
 #include <optional>

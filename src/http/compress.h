@@ -1,4 +1,4 @@
-// Compressed answers (zlib).
+// Compressed answers (content coding gzip, RFC 9110 section 8.4; zlib).
 #pragma once
 
 #include <string>

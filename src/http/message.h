@@ -1,4 +1,4 @@
-// What an HTTP request asks and what is answered, as plain values.
+// What an HTTP request (RFC 9110) asks and what is answered, as plain values.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Names in a form (multipart/form-data) that hold a double quote. Browsers and newer libcurl write
-// it as %22, libcurl before 7.81 as \" , which libmicrohttpd takes for the name's end.
+// Names in a form (multipart/form-data, RFC 7578) that hold a double quote. Browsers and newer
+// libcurl write it as %22, libcurl before 7.81 as \" , which libmicrohttpd takes for the name's
+// end.
 #pragma once
 
 #include <cstddef>

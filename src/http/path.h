@@ -1,4 +1,4 @@
-// A request's path and query as plain text.
+// A request's path and query (RFC 3986) as plain text.
 #pragma once
 
 #include <map>

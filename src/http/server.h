@@ -1,5 +1,5 @@
-// An HTTP/1.1 server (libmicrohttpd) with a thread for each connection. Memory for each connection
-// is bounded whatever a client sends; uploads go to the disk as they come.
+// An HTTP/1.1 server (RFC 9112; libmicrohttpd) with a thread for each connection. Memory for
+// each connection is bounded whatever a client sends; uploads go to the disk as they come.
 #pragma once
 
 #include <functional>

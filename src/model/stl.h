@@ -1,4 +1,5 @@
-// Writing surfaces as binary STL. Used for the job folder, and for what a slicer is given.
+// Writing surfaces as binary STL (3D Systems, 1989). Used for the job folder, and for what a
+// slicer is given.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Announces services on the local network through avahi-daemon (mDNS, DNS-SD), on a thread of its
-// own.
+// Announces services on the local network through avahi-daemon (mDNS, RFC 6762; DNS-SD, RFC
+// 6763), on a thread of its own.
 #pragma once
 
 #include <cstdint>

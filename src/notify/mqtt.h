@@ -1,4 +1,5 @@
-// Keeps the newest of every topic at an MQTT broker (Eclipse Paho), on a thread of its own.
+// Keeps the newest of every topic at an MQTT broker (OASIS MQTT 3.1.1; Eclipse Paho), on a
+// thread of its own.
 #pragma once
 
 #include <optional>

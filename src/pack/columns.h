@@ -8,7 +8,7 @@
 
 namespace packmerger {
 
-// mm³. V_s is the sum.
+// V_s is the sum, mm³.
 struct ColumnSupport {
   double below = 0;   // under the lowest matter of every line, down to the plate
   double inside = 0;  // between matter and matter

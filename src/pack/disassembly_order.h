@@ -1,5 +1,6 @@
-// The proof that a tray can be taken apart: an order, and for each part a way out past those that
-// are still there.
+// The proof that a tray can be taken apart: an order, and for each part an escape path past
+// those that are still there (assembly planning: Wilson and Latombe, 1994, for single
+// translations).
 #pragma once
 
 #include <optional>

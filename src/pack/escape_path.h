@@ -1,5 +1,6 @@
-// Ways for a part out of a tray where it cannot be lifted straight up: a flood fill of its free
-// translations (as SSP, Cui 2023, certifies layouts), here over stretches of free heights.
+// The escape path of a part from a tray where it cannot be lifted straight up: a flood fill of
+// its free translations (as SSP, Cui 2023, certifies layouts), here over stretches of free
+// heights.
 #pragma once
 
 #include <optional>

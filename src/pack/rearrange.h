@@ -1,5 +1,6 @@
 // The last improvement of a finished tray: parts are taken out and put back wherever they are
-// cheapest, in cavities and under overhangs too, which dropping from above never finds.
+// cheapest, in cavities and under overhangs too, which dropping from above never finds: ruin and
+// recreate (Schrimpf et al., 2000).
 #pragma once
 
 #include <optional>

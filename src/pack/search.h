@@ -1,5 +1,5 @@
-// The search for a cheap layout: tabu search (paper, section 6.2) over moves that change order,
-// place, rotation and division together.
+// The search for a cheap layout: tabu search (paper, section 6.2; Glover, 1986) over moves that
+// change order, place, rotation and division together.
 #pragma once
 
 #include <chrono>

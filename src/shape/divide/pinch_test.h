@@ -1,4 +1,5 @@
-// Which tetrahedra surround a point, and whether a part is pinched there. Internal to this folder.
+// Which tetrahedra surround a point, and whether a part is pinched there: the link condition of
+// combinatorial manifolds. Internal to this folder.
 #pragma once
 
 #include <span>

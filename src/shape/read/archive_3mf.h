@@ -1,4 +1,5 @@
-// The ZIP archive of a 3MF file, and the XML in it. Internal to the reader of 3MF.
+// The ZIP archive of a 3MF file, and the XML in it (Open Packaging Conventions, ECMA-376 part
+// 2). Internal to the reader of 3MF.
 #pragma once
 
 #include <memory>

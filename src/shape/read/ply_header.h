@@ -1,4 +1,5 @@
-// What the header of a PLY file declares. Only read_ply.cpp and ply_header.cpp include it.
+// What the header of a PLY file declares (Turk, The PLY Polygon File Format, 1994). Only
+// read_ply.cpp and ply_header.cpp include it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
-// Reads a model file: STL (binary and ASCII), OBJ, PLY (ASCII and binary), OFF and core 3MF.
+// Reads a model file: STL (binary and ASCII), OBJ, PLY (ASCII and binary), OFF and 3MF (Core
+// Specification 1.x of the 3MF Consortium). STL as 3D Systems, OBJ as Wavefront, PLY as Turk
+// (1994) and OFF as Geomview describe them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Text in UTF-16, as Windows programs may save it.
+// Text in UTF-16 (RFC 2781), as Windows programs may save it.
 #pragma once
 
 #include <optional>

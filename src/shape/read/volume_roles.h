@@ -1,5 +1,6 @@
-// What a slicer's project says that the volumes of its objects are for. Internal to the reader of
-// 3MF.
+// What a slicer's project says that the volumes of its objects are for: PrusaSlicer's
+// Slic3r_PE_model.config, Bambu Studio's and OrcaSlicer's model_settings.config, Cura's
+// metadata. Internal to the reader of 3MF.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Splitting what is too large, by bisection of edges: no shape changes, every neighbour follows.
+// Splitting what is too large, by bisection of edges, the longest first (Rivara, 1984): no shape
+// changes, every neighbour follows.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// From shell to tetrahedra (paper, section 3), by TetGen in a process of its own.
+// From shell to tetrahedra (paper, section 3), by TetGen (Si, 2015) in a process of its own.
 #pragma once
 
 #include <optional>

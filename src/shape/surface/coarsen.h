@@ -1,4 +1,5 @@
-// Fewer triangles for the same shape.
+// Fewer triangles for the same shape: edge collapses by quadric error metrics (Garland and
+// Heckbert, 1997).
 #pragma once
 
 #include "base/progress.h"

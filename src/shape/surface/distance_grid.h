@@ -1,5 +1,5 @@
-// Signed distance to a surface on a sparse grid, and its levels as surfaces: OpenVDB, which no
-// other file includes.
+// Signed distance to a surface on a sparse grid, and its levels as surfaces: OpenVDB (Museth,
+// 2013), which no other file includes.
 #pragma once
 
 #include <memory>
