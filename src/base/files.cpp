@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/blocks.h"
 #include "base/descriptor.h"
 #include "base/error.h"
 #include "base/remains.h"
@@ -22,8 +23,6 @@
 
 namespace packmerger {
 namespace {
-
-constexpr std::size_t kReadBlock = 128 << 10;  // bytes; a slow share takes a moment for as many
 
 std::string reason() { return std::strerror(errno); }
 
@@ -38,9 +37,9 @@ void sync_path(const fs::path& path, int flags) {
   disk_answered();
 }
 
-// Calls take(bytes, count) for each block of the file.
+// Calls take(bytes) for each block of the file.
 template <typename Take>
-void read_blocks(const fs::path& path, const Take& take) {
+void read_blocks_of(const fs::path& path, const Take& take) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) {
     const bool missing = errno == ENOENT || errno == ENOTDIR;
@@ -48,17 +47,9 @@ void read_blocks(const fs::path& path, const Take& take) {
                 "Cannot open " + path.string() + ": " + reason(),
                 "Check the name and that you may read it.");
   }
-  std::vector<char> block(kReadBlock);
-  for (;;) {
-    const ssize_t count = ::read(file.get(), block.data(), block.size());
-    disk_answered();
-    if (count == 0) return;
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0)
-      throw Error(Fault::kIo, "Cannot read " + path.string() + ": " + reason(),
-                  "Check the disk or the network share it is on.");
-    take(block.data(), static_cast<std::size_t>(count));
-  }
+  if (!read_blocks(file.get(), take))
+    throw Error(Fault::kIo, "Cannot read " + path.string() + ": " + reason(),
+                "Check the disk or the network share it is on.");
 }
 
 class Sha256 {
@@ -66,7 +57,7 @@ class Sha256 {
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
     EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
   }
-  void add(const char* bytes, std::size_t count) { EVP_DigestUpdate(context_.get(), bytes, count); }
+  void add(std::string_view bytes) { EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()); }
   std::string hex() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned length = 0;
@@ -128,9 +119,9 @@ std::string read_file(const fs::path& path, std::uint64_t max_bytes) {
   if (!ignored && size > max_bytes) refuse();
   std::string bytes;
   if (!ignored) bytes.reserve(size);
-  read_blocks(path, [&](const char* block, std::size_t count) {
-    if (bytes.size() + count > max_bytes) refuse();
-    bytes.append(block, count);
+  read_blocks_of(path, [&](std::string_view block) {
+    if (bytes.size() + block.size() > max_bytes) refuse();
+    bytes.append(block);
   });
   return bytes;
 }
@@ -147,13 +138,7 @@ void write_file_whole(const fs::path& path, std::string_view bytes, unsigned mod
     ::unlink(name.c_str());
     cannot_write(path, why);
   };
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(file.get(), bytes.data(), bytes.size());
-    disk_answered();
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail();
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
+  if (!write_bytes(file.get(), bytes)) fail();
   if (::fsync(file.get()) != 0) fail();
   disk_answered();
   if (::close(file.release()) != 0) fail();
@@ -189,13 +174,13 @@ void sync_tree(const fs::path& folder) {
 
 std::string sha256_hex(std::string_view bytes) {
   Sha256 hash;
-  hash.add(bytes.data(), bytes.size());
+  hash.add(bytes);
   return hash.hex();
 }
 
 std::string sha256_hex_of_file(const fs::path& path) {
   Sha256 hash;
-  read_blocks(path, [&](const char* block, std::size_t count) { hash.add(block, count); });
+  read_blocks_of(path, [&](std::string_view block) { hash.add(block); });
   return hash.hex();
 }
 

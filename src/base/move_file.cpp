@@ -6,11 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <vector>
 
+#include "base/blocks.h"
 #include "base/descriptor.h"
 #include "base/error.h"
 #include "base/names.h"
@@ -19,11 +18,6 @@
 
 namespace packmerger {
 namespace {
-
-constexpr std::size_t kBlock = 128 << 10;  // bytes; a slow share takes a moment for as many
-constexpr std::size_t kMaxName = 255;      // bytes of a file's name on Linux
-constexpr std::array<std::string_view, 4> kBeside = {".reason.txt", ".result.json", ".preview.png",
-                                                     ".toml"};
 
 [[noreturn]] void cannot_move(const fs::path& from, const fs::path& to, int why) {
   const std::string what = printable(from.string()) + " cannot be moved to " +
@@ -64,45 +58,23 @@ class Pace {
   std::size_t bytes_ = std::size_t{2} << 20;
 };
 
-// 0 at the end.
-std::size_t read_block(const fs::path& from, int in, std::vector<char>& block) {
-  for (;;) {
-    const ssize_t count = ::read(in, block.data(), block.size());
-    disk_answered();
-    if (count >= 0) return static_cast<std::size_t>(count);
-    if (errno == EINTR) continue;
-    throw Error(Fault::kIo, "Cannot read " + printable(from.string()) + ": " + std::strerror(errno),
-                "Check the disk or the network share it is on.");
-  }
-}
-
-void write_block(const fs::path& from, const fs::path& to, int out, const char* bytes,
-                 std::size_t count) {
-  while (count > 0) {
-    const ssize_t written = ::write(out, bytes, count);
-    disk_answered();
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) cannot_move(from, to, errno);
-    bytes += written;
-    count -= static_cast<std::size_t>(written);
-  }
-}
-
 void copy_bytes(const fs::path& from, int in, const fs::path& to, int out) {
-  std::vector<char> block(kBlock);
   Pace pace;
   std::size_t unsynced = 0;
   double begun_s = steady_now_s();
-  while (const std::size_t count = read_block(from, in, block)) {
-    write_block(from, to, out, block.data(), count);
-    unsynced += count;
-    if (unsynced < pace.bytes()) continue;
+  const bool is_read = read_blocks(in, [&](std::string_view block) {
+    if (!write_bytes(out, block)) cannot_move(from, to, errno);
+    unsynced += block.size();
+    if (unsynced < pace.bytes()) return;
     if (::fdatasync(out) != 0) cannot_move(from, to, errno);
     disk_answered();
     pace.took(steady_now_s() - begun_s);
     unsynced = 0;
     begun_s = steady_now_s();
-  }
+  });
+  if (!is_read)
+    throw Error(Fault::kIo, "Cannot read " + printable(from.string()) + ": " + std::strerror(errno),
+                "Check the disk or the network share it is on.");
   if (::fsync(out) != 0) cannot_move(from, to, errno);
   disk_answered();
 }
@@ -149,27 +121,6 @@ void move_new(const fs::path& from, const fs::path& to) {
   if (rename_new(from, to) == Moved::kYes) return;
   copy_file_whole(from, to);
   if (::unlink(from.c_str()) != 0) cannot_move(from, to, errno);
-}
-
-fs::path free_path(const fs::path& folder, const std::string& name) {
-  const fs::path plain(name);
-  const std::string extension = first_bytes(plain.extension().string(), 32);
-  for (int number = 1;; ++number) {
-    const std::string tail =
-        (number == 1 ? std::string() : " (" + std::to_string(number) + ")") + extension;
-    const fs::path path =
-        folder / (first_bytes(plain.stem().string(), kMaxName - tail.size()) + tail);
-    const bool taken =
-        is_taken(path) || std::any_of(kBeside.begin(), kBeside.end(), [&](std::string_view suffix) {
-          return is_taken(note_beside(path, suffix));
-        });
-    if (!taken) return path;
-  }
-}
-
-fs::path note_beside(const fs::path& file, std::string_view suffix) {
-  return file.parent_path() /
-         (first_bytes(file.filename().string(), kMaxName - suffix.size()) + std::string(suffix));
 }
 
 }  // namespace packmerger

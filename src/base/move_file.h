@@ -1,9 +1,6 @@
 // Moving a user's files about without ever losing or replacing one.
 #pragma once
 
-#include <string>
-#include <string_view>
-
 #include "base/files.h"
 
 namespace packmerger {
@@ -25,15 +22,5 @@ void copy_file_whole(const fs::path& from, const fs::path& to);
 
 // rename_new, or where that is not possible copy_file_whole and then removing from.
 void move_new(const fs::path& from, const fs::path& to);
-
-// `folder/name`, or `folder/stem (2).ext` and so on: the first where neither that file nor a note,
-// a picture or a settings file beside it are there.
-fs::path free_path(const fs::path& folder, const std::string& name);
-
-// NAME.reason.txt and NAME.result.json: the note beside a file, its name cut to 255 bytes.
-fs::path note_beside(const fs::path& file, std::string_view suffix);
-
-// NAME.preview.png.
-inline fs::path picture_beside(const fs::path& file) { return note_beside(file, ".preview.png"); }
 
 }  // namespace packmerger

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/json_values.h"
-#include "base/move_file.h"
 #include "base/names.h"
 #include "delivery/job_folder.h"
 #include "tray/comparison_json.h"

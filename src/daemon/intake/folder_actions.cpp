@@ -8,7 +8,7 @@
 
 #include "base/move_file.h"
 #include "base/names.h"
-#include "daemon/settings/model_options.h"
+#include "daemon/intake/beside.h"
 
 namespace packmerger {
 namespace {

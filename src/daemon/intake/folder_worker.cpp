@@ -9,8 +9,8 @@
 #include "base/move_file.h"
 #include "base/names.h"
 #include "base/time/backoff.h"
+#include "daemon/intake/beside.h"
 #include "daemon/intake/folder_actions.h"
-#include "daemon/settings/model_options.h"
 
 namespace packmerger {
 namespace {
@@ -141,7 +141,7 @@ void FolderWorker::leave_note(const WatchFolder::Ignored& ignored) const {
   const fs::path failed = ignored.path.parent_path() / "failed";
   const std::string name = ignored.path.filename().string();
   fs::create_directories(failed);
-  write_file_whole(note_beside(failed / name, ".reason.txt"),
+  write_file_whole(note_beside(failed / name, kReasonNote),
                    printable(name) + ": not taken, " + ignored.reason + "\n");
 }
 

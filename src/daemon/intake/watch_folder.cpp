@@ -12,12 +12,11 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/move_file.h"
 #include "base/names.h"
 #include "base/sign_of_life.h"
 #include "base/time/backoff.h"
+#include "daemon/intake/beside.h"
 #include "daemon/intake/whole_file.h"
-#include "daemon/settings/model_options.h"
 
 namespace packmerger {
 namespace {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "base/move_file.h"
 #include "base/names.h"
 #include "base/time/backoff.h"
 #include "daemon/jobs/job_manager.h"

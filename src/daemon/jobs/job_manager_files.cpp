@@ -2,9 +2,9 @@
 // touched by their folder workers alone (folder_worker.h).
 #include "base/move_file.h"
 #include "base/names.h"
+#include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/job_notes.h"
-#include "daemon/settings/model_options.h"
 
 namespace packmerger {
 namespace {
@@ -152,7 +152,7 @@ FileOrder JobManager::file_order(const JobRecord& job) const {
           job.filed,
           job.with_settings,
           job.folder.empty() ? fs::path() : job.folder / fs::path("preview.png"),
-          note_beside(job.filed, is_good(job) ? ".result.json" : ".reason.txt"),
+          note_beside(job.filed, is_good(job) ? kResultNote : kReasonNote),
           is_good(job) ? result_note(job) : reason_note(job)};
 }
 

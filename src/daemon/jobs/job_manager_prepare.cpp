@@ -1,8 +1,8 @@
 // How the job manager has jobs prepared, and which it approves by itself.
 #include <algorithm>
 
-#include "base/move_file.h"
 #include "base/names.h"
+#include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/settings/model_options.h"
 #include "daemon/workers/workers.h"

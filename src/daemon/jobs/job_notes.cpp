@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/json_values.h"
-#include "base/move_file.h"
 #include "base/names.h"
 
 namespace packmerger {

@@ -6,14 +6,12 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "base/move_file.h"
 #include "job/compare/advice.h"
 
 namespace packmerger {
 namespace {
 
 constexpr std::uint64_t kMostBytes = 64 << 10;
-constexpr std::string_view kSuffix = ".toml";
 constexpr std::int64_t kMostCopies = 1000;
 constexpr int kMostDepth = 4;  // of tables below [set]
 
@@ -165,17 +163,6 @@ std::vector<DaemonKey> model_settings_keys() {
   TableReader reader(file, nullptr, "", &keys);
   read_settings_keys(reader, file, Profile{}, options);
   return keys;
-}
-
-fs::path settings_beside(const fs::path& model) { return note_beside(model, kSuffix); }
-
-bool is_settings_name(std::string_view name) {
-  return name.size() > kSuffix.size() && name.ends_with(kSuffix);
-}
-
-bool has_settings_beside(const fs::path& model) {
-  std::error_code ignored;
-  return fs::is_regular_file(fs::symlink_status(settings_beside(model), ignored));
 }
 
 void read_printer_options(TableReader& reader, ModelOptions& options) {

@@ -22,12 +22,6 @@ ModelOptions read_model_settings(const std::filesystem::path& file, const Profil
 // The keys of such a file, as docs/DAEMON.md shows them.
 std::vector<DaemonKey> model_settings_keys();
 
-// "bunny.stl.toml" for "bunny.stl", cut to 255 bytes.
-std::filesystem::path settings_beside(const std::filesystem::path& model);
-bool is_settings_name(std::string_view name);
-// Whether it is there, as a file itself and no link.
-bool has_settings_beside(const std::filesystem::path& model);
-
 // For config.cpp: the keys of a printer's table.
 void read_printer_options(TableReader& reader, ModelOptions& options);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/json_values.h"
-#include "base/move_file.h"
+#include "daemon/intake/beside.h"
 #include "daemon/jobs/waits.h"
 #include "daemon/settings/model_options.h"
 #include "daemon/views/print_view.h"

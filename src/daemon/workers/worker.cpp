@@ -6,7 +6,6 @@
 #include <charconv>
 #include <chrono>
 
-#include "base/move_file.h"
 #include "base/names.h"
 #include "base/process/process.h"
 #include "delivery/child_json.h"

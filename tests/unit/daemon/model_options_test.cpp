@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "daemon/intake/beside.h"
 
 namespace packmerger {
 namespace {

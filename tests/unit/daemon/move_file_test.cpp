@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "daemon/intake/beside.h"
 #include "fixtures/fault_of.h"
 
 namespace packmerger {

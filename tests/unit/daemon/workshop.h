@@ -9,6 +9,7 @@
 
 #include "base/files.h"
 #include "base/random.h"
+#include "daemon/intake/beside.h"
 #include "daemon/intake/folder_actions.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/local/api.h"
