@@ -10,6 +10,7 @@
 #include "job/compare/unpacked.h"
 #include "job/load_models.h"
 #include "job/store/correction.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger::cli {
 namespace {
@@ -46,7 +47,7 @@ void compare_profiles(const StatedPrint& print, const Profile& used, const Profi
 }
 
 std::vector<Tray> trays_in(const StatedPrint& print, int count, const Progress& progress) {
-  const json report = json::parse(read_file(print.path / "job.json", kMaxReportBytes));
+  const json report = json::parse(read_file(print.path / kReportFile, kMaxReportBytes));
   std::vector<std::filesystem::path> files;
   std::vector<int> places;
   for (const json& part : report.at("parts")) {
@@ -132,7 +133,7 @@ std::vector<StatedPrint> prints_of_daemon(const Profile& profile, const DaemonAr
     print.path = text_of(job, "folder");
     print.time_s = printed.get<double>();
     std::error_code unreadable;
-    if (std::filesystem::exists(print.path / "job.json", unreadable))
+    if (std::filesystem::exists(print.path / kReportFile, unreadable))
       prints.push_back(std::move(print));
     else
       warnings.push_back(

@@ -21,6 +21,7 @@
 #include "delivery/job_folder.h"
 #include "delivery/progress_file.h"
 #include "delivery/way.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger::cli {
 namespace {
@@ -71,8 +72,7 @@ void stream(const Arguments& arguments, int trays) {
   const Profile profile = read_prepared_profile(arguments.folder);
   const DeliveryWay& way = way_of(profile);
   const std::string port = arguments.port.empty() ? way.find_printer(profile) : arguments.port;
-  const fs::path told_file =
-      fs::path(arguments.folder) / fmt::format("sent-{}.progress", arguments.tray);
+  const fs::path told_file = fs::path(arguments.folder) / progress_file(arguments.tray);
   tell_interrupted_print(told_file, way.unit);
   stream_watched(arguments, port, told_file);
   if (arguments.json)

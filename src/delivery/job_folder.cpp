@@ -10,6 +10,7 @@
 #include "base/json_values.h"
 #include "delivery/child_json.h"
 #include "job/compare/advice.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -20,10 +21,10 @@ constexpr std::uint64_t kMaxReportBytes = std::uint64_t{64} << 20;
 constexpr int kMaxTrays = 10000;
 
 json read_report(const fs::path& folder) {
-  const fs::path file = folder / "job.json";
+  const fs::path file = folder / kReportFile;
   std::error_code ignored;
   if (!fs::exists(file, ignored))
-    throw Error(Fault::kNoInput, folder.string() + " is no job folder: it holds no job.json",
+    throw Error(Fault::kNoInput, folder.string() + " is no job folder: it holds no " + kReportFile,
                 "Name the folder that packmerger prepare --out wrote.");
   const json report = parse_child_json(read_file(file, kMaxReportBytes));
   if (!report.is_object() || report.value("version", json()) != 1)
@@ -97,13 +98,13 @@ PreparedJob read_prepared(const fs::path& folder) {
     return job;
   } catch (const json::exception& error) {
     throw Error(Fault::kBadInput,
-                (folder / "job.json").string() + " lacks something: " + error.what(),
+                (folder / kReportFile).string() + " lacks something: " + error.what(),
                 "Prepare the model again.");
   }
 }
 
 Profile read_prepared_profile(const fs::path& folder) {
-  return read_profile(fs::absolute(folder / "profile.toml").string());
+  return read_profile(fs::absolute(folder / kProfileFile).string());
 }
 
 std::string doubt_about(const PreparedJob& job) {
@@ -122,13 +123,6 @@ std::string doubt_about(const PreparedJob& job) {
   return other.cost > prepared.cost - kSameCost
              ? ""
              : "prepared " + job.variant + ": printed " + name + " it costs less";
-}
-
-std::string tray_file(const Profile& profile, int tray) {
-  const std::string number = tray > 1 ? "-" + std::to_string(tray) : "";
-  if (const ProgramLanguage* language = profile.language())
-    return "program" + number + "." + std::string(language->extension);
-  return "tray" + number + (profile.document == HandoffDocument::kTrayStl ? ".stl" : ".3mf");
 }
 
 std::string hash_trays(const fs::path& folder, int trays) {

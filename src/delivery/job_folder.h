@@ -41,10 +41,6 @@ Profile read_prepared_profile(const fs::path& folder);
 // warning. Empty: nothing speaks against printing it.
 std::string doubt_about(const PreparedJob& job);
 
-// What the printer is given of a tray: "program.gcode", "program-2.x3g", or the profile's document,
-// "tray-2.stl".
-std::string tray_file(const Profile& profile, int tray);
-
 // For each tray in turn what its printer is given and the SHA-256 of its bytes, JSON text:
 // [{"file": "program.gcode", "sha256": "…"}]. Throws Error{kNoInput} where one is not there.
 std::string hash_trays(const fs::path& folder, int trays);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
+#include "model/job_folder_names.h"
 #include "model/profile/profile_keys.h"
 #include "tray/known_ways.h"
 #include "tray/warnings_json.h"
@@ -125,13 +126,6 @@ Json job_json(const Job& job) {
 
 std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string part_file(int id) { return fmt::format("parts/{:02}.stl", id); }
-
-std::string tray_file(const std::string& stem, int tray, const std::string& extension) {
-  if (tray == 1) return stem + "." + extension;
-  return fmt::format("{}-{}.{}", stem, tray, extension);
 }
 
 }  // namespace packmerger

@@ -20,10 +20,4 @@ nlohmann::json job_json(const Job& job);
 // Indented by two, ending in a line end. Never throws for strings that are not UTF-8.
 std::string json_text(const nlohmann::json& json);
 
-// "parts/07.stl", as job.json names a part's file.
-std::string part_file(int id);
-
-// "tray.stl" for tray 1, "tray-2.stl" for tray 2: how every file of one tray is named.
-std::string tray_file(const std::string& stem, int tray, const std::string& extension);
-
 }  // namespace packmerger

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "model/job_folder_names.h"
 #include "tray/comparison_json.h"
 #include "tray/warnings_json.h"
 
@@ -45,7 +46,7 @@ Json compared_json(const ComparedWays& compared) {
 
 std::optional<KnownWays> known_ways(const fs::path& job_folder) {
   try {
-    return known_of(Json::parse(read_file(job_folder / "job.json", kMostBytes)));
+    return known_of(Json::parse(read_file(job_folder / kReportFile, kMostBytes)));
   } catch (const Error&) {
     return std::nullopt;  // deleted meanwhile
   } catch (const Json::exception&) {

@@ -1,5 +1,6 @@
 #include "tray/program_folder.h"
 
+#include "model/job_folder_names.h"
 #include "tray/job_json.h"
 #include "tray/warnings_json.h"
 #include "tray/write_job_folder.h"
@@ -43,9 +44,9 @@ std::string program_report(const ReadyProgram& program) {
 void write_program_folder(const ReadyProgram& program, const fs::path& out) {
   check_job_folder(out);
   TemporaryFolder folder = TemporaryFolder::beside(out);
-  write_file_whole(folder.path() / "profile.toml", profile_toml(program.profile));
-  write_file_whole(folder.path() / tray_file("program", 1, program.extension), program.bytes);
-  write_file_whole(folder.path() / "job.json", program_report(program));
+  write_file_whole(folder.path() / kProfileFile, profile_toml(program.profile));
+  write_file_whole(folder.path() / tray_file(kProgramStem, 1, program.extension), program.bytes);
+  write_file_whole(folder.path() / kReportFile, program_report(program));
   folder.publish(out);
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "model/job_folder_names.h"
 #include "model/stl.h"
 #include "picture/gltf.h"
 #include "picture/page_scene.h"
@@ -69,13 +70,13 @@ void add_tray(const TrayContent& tray, int number, const fs::path& folder, Write
   writes.emplace_back([&tray, &folder, number] {
     std::vector<const Mesh*> placed;
     for (const Mesh& part : tray.placed) placed.push_back(&part);
-    write_file_whole(folder / tray_file("tray", number, "stl"), binary_stl(placed));
+    write_file_whole(folder / tray_file(kTrayStem, number, "stl"), binary_stl(placed));
   });
   writes.emplace_back([&tray, &folder, number] {
     std::vector<ThreeMfPart> objects;
     for (const JobPart* part : tray.parts)
       objects.push_back({part_name(*part), &part->surface, part->pose, part_colour(part->id - 1)});
-    write_file_whole(folder / tray_file("tray", number, "3mf"), three_mf_bytes(objects));
+    write_file_whole(folder / tray_file(kTrayStem, number, "3mf"), three_mf_bytes(objects));
   });
 }
 
@@ -138,22 +139,22 @@ void write_job_folder(const Job& job, const std::vector<TrayFiles>& trays, const
   check(job, trays.size());
   check_job_folder(out);
   TemporaryFolder folder = TemporaryFolder::beside(out);
-  fs::create_directory(folder.path() / "parts");
+  fs::create_directory(folder.path() / kPartsFolder);
 
   const std::vector<TrayContent> all = contents(job, trays.size());
   Writes writes{
-      [&] { write_file_whole(folder.path() / "preview.png", png_bytes(preview_picture(job))); },
-      [&] { write_file_whole(folder.path() / "preview.glb", preview_glb(job)); },
-      [&] { write_file_whole(folder.path() / "assembly.glb", assembly_glb(job)); },
-      [&] { write_file_whole(folder.path() / "page.glb", page_scene(job)); },
-      [&] { write_file_whole(folder.path() / "profile.toml", profile_toml(job.profile)); },
-      [&] { write_file_whole(folder.path() / "job.json", json_text(job_json(job))); }};
+      [&] { write_file_whole(folder.path() / kPictureFile, png_bytes(preview_picture(job))); },
+      [&] { write_file_whole(folder.path() / kPreviewScene, preview_glb(job)); },
+      [&] { write_file_whole(folder.path() / kAssemblyScene, assembly_glb(job)); },
+      [&] { write_file_whole(folder.path() / kPageScene, page_scene(job)); },
+      [&] { write_file_whole(folder.path() / kProfileFile, profile_toml(job.profile)); },
+      [&] { write_file_whole(folder.path() / kReportFile, json_text(job_json(job))); }};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
     add_tray(all[i], number, folder.path(), writes);
     if (!trays[i].program_extension) continue;
     writes.emplace_back([&, i, number] {
-      write_file_whole(folder.path() / tray_file("program", number, *trays[i].program_extension),
+      write_file_whole(folder.path() / tray_file(kProgramStem, number, *trays[i].program_extension),
                        trays[i].program);
     });
   }

@@ -7,6 +7,7 @@
 #include "base/names.h"
 #include "daemon/jobs/waits.h"
 #include "delivery/progress_file.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -43,7 +44,7 @@ fs::path JobManager::job_path(std::int64_t id) const {
 }
 
 fs::path JobManager::told_file(const JobRecord& job) const {
-  return job_path(job.id) / ("sent-" + std::to_string(job.next_tray) + ".progress");
+  return job_path(job.id) / progress_file(job.next_tray);
 }
 
 void JobManager::say(const JobRecord& job, const std::string& text) const {

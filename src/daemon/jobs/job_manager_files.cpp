@@ -5,6 +5,7 @@
 #include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/job_notes.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -151,7 +152,7 @@ FileOrder JobManager::file_order(const JobRecord& job) const {
           job.input,
           job.filed,
           job.with_settings,
-          job.folder.empty() ? fs::path() : job.folder / fs::path("preview.png"),
+          job.folder.empty() ? fs::path() : job.folder / fs::path(kPictureFile),
           note_beside(job.filed, is_good(job) ? kResultNote : kReasonNote),
           is_good(job) ? result_note(job) : reason_note(job)};
 }

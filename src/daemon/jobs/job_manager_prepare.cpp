@@ -9,6 +9,7 @@
 #include "delivery/job_folder.h"
 #include "delivery/way.h"
 #include "model/file_format.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -79,7 +80,7 @@ fs::path JobManager::compared_before(const JobRecord& job) const {
     folders.emplace_back(old->folder);
   for (const fs::path& folder : folders) {
     std::error_code ignored;
-    if (fs::is_regular_file(folder / "job.json", ignored)) return folder;
+    if (fs::is_regular_file(folder / kReportFile, ignored)) return folder;
   }
   return {};
 }

@@ -11,6 +11,7 @@
 #include "delivery/job_file.h"
 #include "job/compare/advice.h"
 #include "model/file_format.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -159,7 +160,7 @@ JobRecord JobManager::cancel(std::int64_t id) {
 bool JobManager::has_program(const JobRecord& ended) const {
   std::error_code ignored;
   return ended.trays > 0 && !cleaner_.is_gone(ended) &&
-         fs::exists(fs::path(ended.folder) / "job.json", ignored);
+         fs::exists(fs::path(ended.folder) / kReportFile, ignored);
 }
 
 JobRecord JobManager::again_of(const JobRecord& ended) const {

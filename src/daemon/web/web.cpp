@@ -12,6 +12,7 @@
 #include "daemon/web/doors/doors.h"
 #include "daemon/web/web_routes.h"
 #include "model/file_format.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -195,7 +196,7 @@ HttpReply Web::file_of_job(const std::string& id, const std::string& name) {
   const bool is_part = std::isdigit(static_cast<unsigned char>(name.front())) != 0;
   HttpReply reply;
   reply.type = media_type(name);
-  reply.file = is_part ? fs::path(folder) / "parts" / name : fs::path(folder) / name;
+  reply.file = is_part ? fs::path(folder) / kPartsFolder / name : fs::path(folder) / name;
   reply.keep = Keep::kWhileTheSame;
   return reply;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
 #include <sstream>
 #include <string_view>
 
@@ -106,12 +105,6 @@ std::vector<WebRouteText> web_routes() {
     routes.push_back(
         {std::string(row.method), std::string(kApi) + std::string(row.path), row.access});
   return routes;
-}
-
-bool is_job_file(const std::string& name) {
-  static const std::regex kNames(
-      R"(job\.json|profile\.toml|preview\.(png|glb)|(assembly|page)\.glb|tray(-\d+)?\.(3mf|stl)|program(-\d+)?\.(gcode|x3g)|\d+\.stl)");
-  return std::regex_match(name, kNames);
 }
 
 std::string media_type(const std::string& name) {

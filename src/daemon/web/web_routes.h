@@ -41,9 +41,6 @@ struct WebRouteText {
 };
 std::vector<WebRouteText> web_routes();
 
-// Files that a job folder shows: what is in it, never a way out of it.
-bool is_job_file(const std::string& name);
-
 // "model/gltf-binary" for .glb, and so on; "application/octet-stream" for what is not known.
 std::string media_type(const std::string& name);
 

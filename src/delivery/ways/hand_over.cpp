@@ -4,6 +4,7 @@
 #include "base/move_file.h"
 #include "delivery/job_folder.h"
 #include "delivery/tray_to_send.h"
+#include "model/job_folder_names.h"
 
 namespace packmerger {
 namespace {
@@ -39,8 +40,8 @@ void check_documents(const fs::path& folder, const Delivery& delivery) {
 
 bool holds_same_report(const fs::path& folder, const fs::path& job_folder) {
   std::error_code ignored;
-  return fs::is_regular_file(folder / "job.json", ignored) &&
-         sha256_hex_of_file(folder / "job.json") == sha256_hex_of_file(job_folder / "job.json");
+  return fs::is_regular_file(folder / kReportFile, ignored) &&
+         sha256_hex_of_file(folder / kReportFile) == sha256_hex_of_file(job_folder / kReportFile);
 }
 
 void give(const Delivery& delivery, const PrintListener&, PrintControl&) {
@@ -58,7 +59,7 @@ void give(const Delivery& delivery, const PrintListener&, PrintControl&) {
       copy_file_whole(tray_to_send(delivery.folder, delivery.profile, tray),
                       folder.path() / tray_file(delivery.profile, tray));
     check_documents(folder.path(), delivery);  // the very copies
-    for (const char* file : {"job.json", "preview.png"})
+    for (const char* file : {kReportFile, kPictureFile})
       copy_file_whole(delivery.folder / file, folder.path() / file);
     // Whoever takes it from there is another program or person, whatever the umask here.
     fs::permissions(folder.path(), fs::perms{0755}, ignored);

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "model/job_folder_names.h"
 #include "unit/tray/read_back.h"
 #include "unit/tray/sample_job.h"
 
@@ -52,6 +53,8 @@ TEST_F(JobFolder, HoldsEveryFileOfTheContract) {
                                    "tray-2.stl", "parts/01.stl", "parts/02.stl", "parts/03.stl",
                                    "parts/04.stl", "preview.glb", "assembly.glb", "page.glb",
                                    "preview.png", "program.gcode", "program-2.gcode"}));
+  for (const std::string& name : names_in(out_))
+    EXPECT_TRUE(is_job_file(fs::path(name).filename().string())) << name;
   EXPECT_EQ(read_file(out_ / "program-2.gcode", kMaxBytes), "G28 X\n");
   EXPECT_TRUE(read_file(out_ / "preview.png", kMaxBytes).starts_with("\x89PNG\r\n"));
   EXPECT_EQ(names_in(folder_.path()).size(), 16U) << "nothing beside the folder";
