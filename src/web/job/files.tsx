@@ -19,7 +19,16 @@ async function save(job: Job, file: string): Promise<void> {
   }
 }
 
+// Of jobs that earlier versions prepared: those do not tell what their printer is given.
 const PROGRAMS: Record<string, string> = { gcode: 'gcode', s3g: 'x3g' };
+
+// Null where the printer is given a document.
+function programOf(job: Job, dialect: string, tray: number): string | null {
+  const given = job.tray_files?.[tray - 1]?.file;
+  if (given) return given.startsWith('program') ? given : null;
+  const ending = PROGRAMS[dialect];
+  return ending ? `program${tray === 1 ? '' : `-${tray}`}.${ending}` : null;
+}
 
 export function filesOf(job: Job, dialect: string): { file: string; title: string }[] {
   const files: { file: string; title: string }[] = [];
@@ -28,8 +37,8 @@ export function filesOf(job: Job, dialect: string): { file: string; title: strin
     const which = job.trays > 1 ? ` ${tray}` : '';
     if (job.kind !== 'program')
       files.push({ file: `tray${number}.3mf`, title: `Tray${which}, 3MF` }, { file: `tray${number}.stl`, title: `Tray${which}, STL` });
-    const program = PROGRAMS[dialect];
-    if (program) files.push({ file: `program${number}.${program}`, title: `Program${which}, ${program}` });
+    const program = programOf(job, dialect, tray);
+    if (program) files.push({ file: program, title: `Program${which}, ${program.split('.').pop()}` });
   }
   if (job.kind !== 'program') files.push({ file: 'preview.png', title: 'Picture' });
   return [...files, { file: 'job.json', title: 'Report, JSON' }];
