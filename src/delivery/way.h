@@ -1,5 +1,5 @@
 // A way of delivery: how printers of a dialect are given their jobs. One constant of this type a
-// way, each in a file of its own below src/delivery/ways; src/delivery/ways.cpp registers them.
+// way, each in a file of its own below src/delivery/ways; src/delivery/ways/ways.cpp registers them.
 // Whoever sends, watches or configures a printer asks here, and never which dialect it has.
 #pragma once
 

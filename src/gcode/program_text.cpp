@@ -5,7 +5,7 @@
 #include <cctype>
 
 #include "base/error.h"
-#include "base/zip_archive.h"
+#include "base/storage/zip_archive.h"
 
 namespace packmerger {
 namespace {

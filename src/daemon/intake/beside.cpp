@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 
 namespace packmerger {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <functional>
 
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 #include "daemon/intake/beside.h"
 
 namespace packmerger {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/files.h"
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 #include "base/time/backoff.h"
 #include "daemon/intake/beside.h"
 #include "daemon/intake/folder_actions.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 #include "daemon/jobs/waits.h"
 #include "delivery/progress_file.h"
 #include "model/job_folder_names.h"

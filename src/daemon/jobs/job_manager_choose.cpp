@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "base/json_values.h"
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 #include "daemon/jobs/choose_printer.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/settings/model_options.h"

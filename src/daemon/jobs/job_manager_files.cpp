@@ -1,7 +1,7 @@
 // How files come to the job manager, and where they go at the end. What lies in watched folders is
 // touched by their folder workers alone (folder_worker.h).
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 #include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/job_notes.h"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "base/move_file.h"
 #include "base/names.h"
+#include "base/storage/move_file.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/settings/model_options.h"
 #include "delivery/child_json.h"

@@ -1,7 +1,7 @@
 #include "delivery/ways/hand_over.h"
 
 #include "base/error.h"
-#include "base/move_file.h"
+#include "base/storage/move_file.h"
 #include "delivery/job_folder.h"
 #include "delivery/tray_to_send.h"
 #include "model/job_folder_names.h"

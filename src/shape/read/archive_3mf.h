@@ -8,7 +8,7 @@
 
 #include <pugixml.hpp>
 
-#include "base/zip_archive.h"
+#include "base/storage/zip_archive.h"
 
 namespace packmerger {
 

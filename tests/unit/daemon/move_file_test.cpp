@@ -1,4 +1,4 @@
-#include "base/move_file.h"
+#include "base/storage/move_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <fstream>
 
-#include "base/move_file.h"
 #include "base/sign_of_life.h"
+#include "base/storage/move_file.h"
 #include "daemon/intake/folder_actions.h"
 #include "daemon/intake/pulse.h"
 

@@ -1,4 +1,4 @@
-#include "base/zip_archive.h"
+#include "base/storage/zip_archive.h"
 
 #include <algorithm>
 #include <array>
