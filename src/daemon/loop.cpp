@@ -19,18 +19,18 @@
 #include "base/time/backoff.h"
 #include "base/time/clock.h"
 #include "daemon/jobs/job_manager.h"
-#include "daemon/jobs/notifier.h"
 #include "daemon/local/api.h"
 #include "daemon/local/socket_server.h"
+#include "daemon/notifier.h"
 #include "daemon/reload.h"
 #include "daemon/room_to_start.h"
 #include "daemon/service_manager.h"
+#include "daemon/settings/workers.h"
 #include "daemon/state_folder.h"
 #include "daemon/state_lock.h"
 #include "daemon/views/daemon_view.h"
 #include "daemon/web/web_service.h"
 #include "daemon/workers/worker_threads.h"
-#include "daemon/workers/workers.h"
 
 namespace packmerger {
 namespace {

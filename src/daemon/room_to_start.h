@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
 
 namespace packmerger {
 

@@ -2,7 +2,7 @@
 // is done on the calling thread, and answered with what the loop is to be told; nothing is thrown.
 #pragma once
 
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
 
 namespace packmerger {
 

@@ -10,9 +10,9 @@
 #include <set>
 #include <string>
 
-#include "daemon/intake/pulse.h"
 #include "daemon/intake/watch_folder.h"
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
+#include "daemon/orders/pulse.h"
 
 namespace packmerger {
 

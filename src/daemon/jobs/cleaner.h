@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
 #include "daemon/settings/config.h"
 #include "job/store/job_store.h"
 

@@ -16,7 +16,7 @@
 #include "daemon/intake/folder_worker.h"
 #include "daemon/jobs/choose_printer.h"
 #include "daemon/jobs/cleaner.h"
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
 #include "daemon/settings/config.h"
 #include "job/store/job_store.h"
 

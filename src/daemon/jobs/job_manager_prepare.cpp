@@ -5,7 +5,7 @@
 #include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/settings/model_options.h"
-#include "daemon/workers/workers.h"
+#include "daemon/settings/workers.h"
 #include "delivery/job_folder.h"
 #include "delivery/way.h"
 #include "model/file_format.h"

@@ -5,10 +5,11 @@
 
 #include "base/json_values.h"
 #include "daemon/jobs/waits.h"
+#include "daemon/keys/look_link.h"
 #include "daemon/views/daemon_view.h"
 #include "daemon/views/job_view.h"
 #include "daemon/views/printer_view.h"
-#include "daemon/web/web.h"
+#include "daemon/views/reply.h"
 #include "local/client.h"
 
 namespace packmerger {
@@ -22,7 +23,6 @@ using KeyVerb = json (*)(const WebConfig&, KeyRing&, const json&);
 constexpr auto kDefaultJobs = static_cast<std::int64_t>(kLastEnded);
 constexpr int kMostJobs = 1000;
 constexpr int kMostChoices = 99;
-constexpr std::string_view kDone = R"({"ok":true,"result":)";  // a reply's beginning
 
 [[noreturn]] void not_understood(const std::string& what) {
   throw Error(Fault::kUsage, what, "docs/DAEMON.md lists the requests.");
@@ -268,15 +268,6 @@ std::string answer(JobManager& job_manager, KeyRing& keys, std::string_view requ
 
 std::string answer_upload(JobManager& job_manager, const UploadedJob& upload) {
   return answered([&] { return Reply{job_view(job_manager, job_manager.uploaded(upload))}; });
-}
-
-std::string reply_with(std::string_view result) {
-  return std::string(kDone).append(result).append("}");
-}
-
-std::optional<std::string_view> result_in(std::string_view reply) {
-  if (!reply.starts_with(kDone)) return std::nullopt;
-  return reply.substr(kDone.size(), reply.size() - kDone.size() - 1);
 }
 
 }  // namespace packmerger

@@ -2,13 +2,12 @@
 // thread and touches nothing but the job manager and the keys.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "daemon/jobs/job_manager.h"
-#include "daemon/web/key_ring.h"
-#include "daemon/web/web.h"
+#include "daemon/keys/key_ring.h"
+#include "daemon/orders/messages.h"
 
 namespace packmerger {
 
@@ -18,11 +17,5 @@ std::string answer(JobManager& job_manager, KeyRing& keys, std::string_view requ
 
 // The same for a file that came over the web: the job that it became.
 std::string answer_upload(JobManager& job_manager, const UploadedJob& upload);
-
-// A reply that tells this result, which is JSON text.
-std::string reply_with(std::string_view result);
-
-// The result within either reply, as JSON text; nothing where it tells an error. Refers to `reply`.
-std::optional<std::string_view> result_in(std::string_view reply);
 
 }  // namespace packmerger

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/workers/workers.h"
+#include "daemon/settings/workers.h"
 
 namespace packmerger {
 namespace {

@@ -1,10 +1,10 @@
 #include "daemon/views/state_board.h"
 
 #include "base/json_values.h"
-#include "daemon/local/api.h"
 #include "daemon/views/daemon_view.h"
 #include "daemon/views/job_view.h"
 #include "daemon/views/printer_view.h"
+#include "daemon/views/reply.h"
 
 namespace packmerger {
 namespace {

@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "base/json_values.h"
 #include "base/time/clock.h"
+#include "daemon/local/web_error.h"
 #include "daemon/web/doors/door.h"
 #include "daemon/web/doors/doors.h"
 #include "daemon/web/web_routes.h"
@@ -57,14 +58,6 @@ HttpReply no_such_route(const WebRoute& route) {
 
 std::filesystem::path uploads_folder(const DaemonConfig& config) {
   return config.state / "uploads";
-}
-
-std::string look_link(const WebConfig& web, KeyRing& keys) {
-  const bool is_one = web.address != "0.0.0.0" && web.address != "::" && web.address != "127.0.0.1";
-  const std::string host = keys.empty() || !is_one ? "localhost" : web.address;
-  const bool is_six = host.find(':') != std::string::npos;
-  return "http://" + (is_six ? "[" + host + "]" : host) + ":" + std::to_string(web.port) +
-         "/#look=" + keys.add_code(steady_now_s());
 }
 
 Web::Web(const DaemonConfig& config, KeyRing& keys, WebQuestions& questions, WebEvents& events)

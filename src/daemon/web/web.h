@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "daemon/keys/key_ring.h"
+#include "daemon/local/loop_proxy.h"
 #include "daemon/settings/config.h"
-#include "daemon/web/key_ring.h"
-#include "daemon/web/loop_proxy.h"
 #include "daemon/web/web_events.h"
 #include "daemon/web/web_guard.h"
 #include "http/server.h"
@@ -16,9 +16,6 @@ namespace packmerger {
 
 // Where files lie while they come in.
 std::filesystem::path uploads_folder(const DaemonConfig& config);
-
-// Where a browser beside the daemon finds the page, with a code that lets it look, once.
-std::string look_link(const WebConfig& web, KeyRing& keys);
 
 // Runs while it lives. Requests wait for the loop for some seconds at most.
 class Web {

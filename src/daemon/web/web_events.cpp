@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "daemon/web/random_text.h"
+#include "daemon/keys/random_text.h"
 
 namespace packmerger {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/json_values.h"
+#include "daemon/local/web_error.h"
 
 namespace packmerger {
 namespace {
@@ -44,15 +45,6 @@ bool is_local(const HttpRequest& request) {
 }
 
 }  // namespace
-
-HttpReply web_error(int status, Fault fault, const std::string& what, const std::string& hint) {
-  const nlohmann::json body = {
-      {"error", {{"fault", static_cast<int>(fault)}, {"what", what}, {"hint", hint}}}};
-  HttpReply reply;
-  reply.status = status;
-  reply.body = json_text(body) + "\n";
-  return reply;
-}
 
 std::string machine_name() {
   std::array<char, 256> name{};

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "daemon/web/key_ring.h"
+#include "daemon/keys/key_ring.h"
 #include "http/message.h"
 
 namespace packmerger {
@@ -60,8 +60,5 @@ std::string machine_name();
 
 // The key that comes with a request: X-Api-Key, or Authorization: Bearer. Empty where none does.
 std::string_view key_of(const HttpRequest& request);
-
-// {"error": {"fault", "what", "hint"}} with that status.
-HttpReply web_error(int status, Fault fault, const std::string& what, const std::string& hint);
 
 }  // namespace packmerger

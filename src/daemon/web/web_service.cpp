@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/time/backoff.h"
+#include "daemon/keys/look_link.h"
 #include "daemon/local/api.h"
 #include "daemon/web/doors/door.h"
 #include "daemon/web/web_guard.h"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "daemon/jobs/job_manager.h"
+#include "daemon/keys/key_ring.h"
 #include "daemon/views/state_board.h"
-#include "daemon/web/key_ring.h"
 #include "daemon/web/web.h"
 #include "notify/mdns.h"
 

@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/intake/pulse.h"
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
+#include "daemon/orders/pulse.h"
 #include "daemon/settings/config.h"
 
 namespace packmerger {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/time/clock.h"
+#include "daemon/settings/workers.h"
 #include "daemon/workers/worker.h"
-#include "daemon/workers/workers.h"
 #include "firmware_io/ports/hotplug.h"
 
 namespace packmerger {

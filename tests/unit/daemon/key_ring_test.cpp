@@ -1,4 +1,4 @@
-#include "daemon/web/key_ring.h"
+#include "daemon/keys/key_ring.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/web/look_codes.h"
+#include "daemon/keys/look_codes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/web/loop_proxy.h"
+#include "daemon/local/loop_proxy.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "base/sign_of_life.h"
 #include "base/storage/move_file.h"
 #include "daemon/intake/folder_actions.h"
-#include "daemon/intake/pulse.h"
+#include "daemon/orders/pulse.h"
 
 namespace {
 

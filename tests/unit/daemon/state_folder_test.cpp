@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/web/key_ring.h"
+#include "daemon/keys/key_ring.h"
 
 namespace packmerger {
 namespace {

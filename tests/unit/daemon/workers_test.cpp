@@ -1,5 +1,5 @@
 // Several models are prepared at the same time.
-#include "daemon/workers/workers.h"
+#include "daemon/settings/workers.h"
 
 #include "unit/daemon/running_daemon.h"
 #include "unit/daemon/workshop.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/web/loop_proxy.h"
+#include "daemon/local/loop_proxy.h"
 #include "http/message.h"
 
 namespace packmerger {

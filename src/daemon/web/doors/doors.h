@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/web/loop_proxy.h"
+#include "daemon/local/loop_proxy.h"
 #include "http/message.h"
 
 namespace packmerger {

@@ -1,10 +1,10 @@
-#include "daemon/web/loop_proxy.h"
+#include "daemon/local/loop_proxy.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "daemon/local/api.h"
-#include "daemon/web/web_guard.h"
+#include "daemon/local/web_error.h"
+#include "daemon/views/reply.h"
 #include "delivery/job_file.h"
 #include "model/file_format.h"
 

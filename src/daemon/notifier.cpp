@@ -1,4 +1,4 @@
-#include "daemon/jobs/notifier.h"
+#include "daemon/notifier.h"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/web/look_codes.h"
+#include "daemon/keys/look_codes.h"
 
 namespace packmerger {
 

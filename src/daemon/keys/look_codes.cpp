@@ -1,7 +1,7 @@
-#include "daemon/web/look_codes.h"
+#include "daemon/keys/look_codes.h"
 
 #include "base/files.h"
-#include "daemon/web/random_text.h"
+#include "daemon/keys/random_text.h"
 
 namespace packmerger {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/web/key_ring.h"
+#include "daemon/keys/key_ring.h"
 
 #include <openssl/crypto.h>
 
@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "daemon/jobs/job_manager.h"
-#include "daemon/web/random_text.h"
+#include "base/time/wall_clock.h"
+#include "daemon/keys/random_text.h"
 
 namespace packmerger {
 namespace {
@@ -66,7 +66,7 @@ void KeyRing::keep(std::vector<WebKey> keys) {
 std::string KeyRing::keep_with(std::vector<WebKey> keys, const std::string& name,
                                const std::string& beginning, bool looks_only) {
   const std::string text = beginning + random_text(kKeyBytes);
-  keys.push_back({name, sha256_hex(text), wall_clock_s(), looks_only});
+  keys.push_back({name, sha256_hex(text), unix_now_s(), looks_only});
   keep(std::move(keys));
   return text;
 }

@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "base/queue.h"
-#include "daemon/messages.h"
+#include "daemon/orders/messages.h"
 #include "http/message.h"
 
 namespace packmerger {

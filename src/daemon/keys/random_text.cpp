@@ -1,4 +1,4 @@
-#include "daemon/web/random_text.h"
+#include "daemon/keys/random_text.h"
 
 #include <openssl/rand.h>
 

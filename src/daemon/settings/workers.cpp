@@ -1,4 +1,4 @@
-#include "daemon/workers/workers.h"
+#include "daemon/settings/workers.h"
 
 #include <unistd.h>
 
