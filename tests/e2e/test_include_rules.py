@@ -190,6 +190,13 @@ class Includes(unittest.TestCase):
                     wrong.append(f"{name_of(path)} includes {included}")
         self.assertEqual(wrong, [])
 
+    def test_only_the_tables_ask_for_a_dialect(self):
+        """Whoever else asks would have to be found again when a way of delivery comes."""
+        asking = [name_of(path) for path, folder in house_code()
+                  if "Dialect::" in path.read_text(encoding="utf-8")
+                  and not name_of(path).startswith(("src/model/", "src/delivery/ways/"))]
+        self.assertEqual(asking, [])
+
     def test_program_code_includes_no_tests(self):
         wrong = [f"{name_of(path)} includes {included}" for path, _ in house_code() for included in includes(path)
                  if included.startswith(("tests/", "fixtures/", "gtest/", "gmock/", "rapidcheck"))]
