@@ -1,10 +1,12 @@
 #include "daemon/notifier.h"
+#include "base/time/wall_clock.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include "base/names.h"
+#include "base/time/clock.h"
 
 #include "base/json_values.h"
 #include "daemon/views/job_view.h"
@@ -29,7 +31,7 @@ Notifier::Notifier(const DaemonConfig& config, JobManager& job_manager, JobStore
   follow_settings();
   store_.listen([this](const JobRecord& job, std::string_view note) {
     if (has_readers() && job.state != JobState::kClaiming)
-      jobs_.push_back({job, std::string(note), wall_clock_s()});
+      jobs_.push_back({job, std::string(note), unix_now_s()});
   });
 }
 
@@ -83,7 +85,7 @@ void Notifier::note_troubles() {
   }
   if (const std::optional<Trouble> trouble = mqtt_ ? mqtt_->trouble() : std::nullopt)
     troubles["MQTT broker " + printable(config_.mqtt.broker)] = *trouble;
-  job_manager_.note_troubles("news", std::move(troubles));
+  job_manager_.note_troubles("notifier", std::move(troubles));
 }
 
 void Notifier::tell_jobs() {
@@ -117,7 +119,7 @@ void Notifier::tell_printers() {
     if (told == view) continue;
     told = view;
     tell({"printers/" + printer.name,
-          json_text({{"event", "printer"}, {"at_s", wall_clock_s()}, {"printer", view}})});
+          json_text({{"event", "printer"}, {"at_s", unix_now_s()}, {"printer", view}})});
   }
 }
 

@@ -1,3 +1,4 @@
+#include "base/time/wall_clock.h"
 #include "daemon/intake/folder_worker.h"
 
 #include <poll.h>

@@ -8,7 +8,8 @@
 
 #include "base/names.h"
 #include "base/time/backoff.h"
-#include "daemon/jobs/job_manager.h"
+#include "base/time/wall_clock.h"
+#include "daemon/jobs/job_refusals.h"
 #include "job/store/deletable_jobs.h"
 
 namespace packmerger {
@@ -31,8 +32,6 @@ std::string day(double unix_s) {
   return fmt::format("{:%Y-%m-%d}", fmt::localtime(static_cast<std::time_t>(unix_s)));
 }
 
-std::string title(const JobRecord& job) { return "Job " + std::to_string(job.id); }
-
 }  // namespace
 
 std::optional<DiskSpace> disk_space(const fs::path& place) {
@@ -42,10 +41,11 @@ std::optional<DiskSpace> disk_space(const fs::path& place) {
                    std::uint64_t{disk.f_bavail} * disk.f_frsize};
 }
 
-Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<FolderOrder>& folder_worker,
-                 Log log, Measure measure)
+Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, const JobSteps& steps,
+                 Queue<FolderOrder>& folder_worker, Log log, Measure measure)
     : config_(config),
       store_(store),
+      steps_(steps),
       folder_worker_(folder_worker),
       log_(std::move(log)),
       measure_(std::move(measure)) {
@@ -55,7 +55,7 @@ Cleaner::Cleaner(const DaemonConfig& config, JobStore& store, Queue<FolderOrder>
 void Cleaner::serve(double now_s) {
   now_s_ = now_s;
   if (!deleting_.empty() || now_s < next_s_) return;
-  const double wall_s = wall_clock_s();
+  const double wall_s = unix_now_s();
   look_at_room();
   look_back(wall_s);
   double until_s = announced_ ? 0 : kept_since_s(wall_s);
@@ -147,8 +147,7 @@ double Cleaner::kept_since_s(double wall_s) const {
 }
 
 void Cleaner::remove(const JobRecord& job) {
-  if (!has_ended(job.state))
-    throw Error(Fault::kUsage, title(job) + " has not ended", "Cancel it first.");
+  if (!is_possible(job, JobEventKind::kDelete)) refuse(job, JobEventKind::kDelete);
   if (is_gone(job))
     throw Error(Fault::kUsage,
                 "The folder of job " + std::to_string(job.id) +
@@ -163,7 +162,7 @@ void Cleaner::remove(const JobRecord& job) {
           "Wait for its end, or cancel it first.");
   for (const JobRecord& other : sharing)
     if (!other.filing_done)
-      throw Error(Fault::kBusy, title(other) + " is just being filed", "Try again in a moment.");
+      throw Error(Fault::kBusy, title_of(other) + " is just being filed", "Try again in a moment.");
   left_.erase(job.id);
   wanted_.insert(job.id);
   unrecorded_.insert(job.id);
@@ -212,16 +211,16 @@ void Cleaner::on(const Deleted& event) {
 void Cleaner::record() {
   try {
     while (!gone_.empty()) {
-      if (std::optional<JobRecord> job = store_.find(gone_.begin()->first)) {
-        job->deleted_s = wall_clock_s();
-        job->to_delete = false;
+      std::optional<JobRecord> job = store_.find(gone_.begin()->first);
+      if (job && is_possible(*job, JobEventKind::kDeleted)) {
+        steps_.apply(*job, JobEventKind::kDeleted);
         store_.save(*job, "its folder was deleted");
       }
       gone_.erase(gone_.begin());
     }
     while (!unrecorded_.empty()) {
       if (std::optional<JobRecord> job = store_.find(*unrecorded_.begin())) {
-        job->to_delete = true;
+        steps_.apply(*job, JobEventKind::kDelete);
         store_.save(*job);
       }
       unrecorded_.erase(unrecorded_.begin());
@@ -246,11 +245,11 @@ void Cleaner::put_off(const Deleted& event) {
   }
   if (!trouble_) {
     log_("not deleted: " + why);
-    trouble_ = Trouble{{}, wall_clock_s(), 0, 0};
+    trouble_ = Trouble{{}, unix_now_s(), 0, 0};
   }
   trouble_->what = fmt::format("{} folders cannot be deleted: {}", left_.size(), why);
   ++trouble_->tries;
-  trouble_->next_s = wall_clock_s() + pause_s;
+  trouble_->next_s = unix_now_s() + pause_s;
 }
 
 bool Cleaner::is_gone(const JobRecord& job) const {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/jobs/job_steps.h"
 #include "daemon/orders/messages.h"
 #include "daemon/settings/config.h"
 #include "job/store/job_store.h"
@@ -46,8 +47,8 @@ class Cleaner {
   using Measure = std::function<std::optional<DiskSpace>(const std::filesystem::path&)>;
 
   // Everything must outlive it.
-  Cleaner(const DaemonConfig& config, JobStore& store, Queue<FolderOrder>& folder_worker, Log log,
-          Measure measure = disk_space);
+  Cleaner(const DaemonConfig& config, JobStore& store, const JobSteps& steps,
+          Queue<FolderOrder>& folder_worker, Log log, Measure measure = disk_space);
 
   // Looks from time to time. now_s: a clock that never goes back. What cannot be recorded now is
   // recorded later: folders are deleted where the disk has no room for a record.
@@ -88,6 +89,7 @@ class Cleaner {
 
   const DaemonConfig& config_;
   JobStore& store_;
+  const JobSteps& steps_;
   Queue<FolderOrder>& folder_worker_;
   Log log_;
   Measure measure_;

@@ -1,7 +1,6 @@
 #include "daemon/jobs/job_manager.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/names.h"
 #include "base/storage/move_file.h"
@@ -28,16 +27,12 @@ std::string handoff_name(const JobRecord& job) {
 
 }  // namespace
 
-double wall_clock_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 JobManager::JobManager(const DaemonConfig& config, JobStore& store, WorkQueues& queues, Log log)
     : config_(config),
       store_(store),
       queues_(queues),
       log_(std::move(log)),
-      cleaner_(config, store, queues.folders[config.state / "jobs"].orders, log_) {}
+      cleaner_(config, store, steps_, queues.folders[config.state / "jobs"].orders, log_) {}
 
 fs::path JobManager::job_path(std::int64_t id) const {
   return config_.state / "jobs" / std::to_string(id);
@@ -70,18 +65,15 @@ const std::optional<Correction>& JobManager::correction(const std::string& print
   return found->second;
 }
 
-void JobManager::end(JobRecord& job, JobState state, const std::string& reason,
+void JobManager::end(JobRecord& job, JobEventKind event, const std::string& reason,
                      const std::string& hint, const std::string& note,
                      const PrinterRecord* printer) {
-  job.state = state;
+  steps_.apply(job, event);
   job.reason = reason;
   job.hint = hint;
-  job.ended_s = wall_clock_s();
-  job.filing_done = job.input.empty();
-  forget_tries(job);
   forget_trouble(job.id);
   store_.save(job, note.empty() ? reason : note, printer);
-  say(job, std::string(state_name(state)) + (reason.empty() ? "" : ": " + reason));
+  say(job, std::string(state_name(job.state)) + (reason.empty() ? "" : ": " + reason));
 }
 
 void JobManager::recover() {
@@ -95,7 +87,7 @@ void JobManager::recover() {
 void JobManager::recover(JobRecord& job) {
   if (job.state == JobState::kPreparing) {
     if (++job.cut_short >= kMostCutShort) return tried_to_death(job, "while it was being prepared");
-    job.state = JobState::kReceived;
+    steps_.apply(job, JobEventKind::kDied);
     store_.save(job, "the daemon died while it was being prepared; it is prepared again");
   }
   if (job.state == JobState::kSending) recover_sending(job);
@@ -105,7 +97,7 @@ void JobManager::recover(JobRecord& job) {
 
 // What kills the daemon each time would keep everybody else from being printed.
 void JobManager::tried_to_death(JobRecord& job, const char* what) {
-  end(job, JobState::kFailed,
+  end(job, JobEventKind::kDiedTooOften,
       "the daemon died " + std::to_string(job.cut_short) + " times in a row " + what,
       "Look into the messages of the daemon and the system for what ended it (too little memory: "
       "lower prepare.memory_bytes or prepare.workers), then drop the file again.");
@@ -120,16 +112,18 @@ void JobManager::recover_sending(JobRecord& job) {
           job, hands_over ? "while it was being handed over" : "before its print began");
     const PrinterRecord record = with_bed_as_before(job, Fault::kInterrupted);
     if (!job.reason.empty())  // nothing else gives one to what is being sent
-      return end(job, JobState::kCancelled, "cancelled before the print began", "", "", &record);
-    if (is_tried_again(job)) return wait_on(job, &record);
-    job.state = JobState::kApproved;
+      return end(job, JobEventKind::kPrintCancelled, "cancelled before the print began", "", "",
+                 &record);
+    const bool was_tried = is_tried_again(job);
+    steps_.apply(job, JobEventKind::kDiedBeforeTheTray);
+    if (was_tried) return wait_on(job, &record);
     return store_.save(job,
                        hands_over ? "the daemon was interrupted; handing over again"
                                   : "the daemon was interrupted before the print began",
                        &record);
   }
   note_told(job);
-  end(job, JobState::kFailed, with_told(job, "interrupted while printing"),
+  end(job, JobEventKind::kDied, with_told(job, "interrupted while printing"),
       "See what the printer did, clear its bed, and print again with packmerger jobs again " +
           std::to_string(job.id) + ".");
 }
@@ -138,13 +132,10 @@ void JobManager::recover_sending(JobRecord& job) {
 // starts again, after a power cut or a week, nobody has looked at.
 void JobManager::drop_order(JobRecord& job) {
   const PrinterConfig* printer = config_.printer(job.printer);
-  if (has_ended(job.state) || job.state == JobState::kSending) return;
+  if (!is_possible(job, JobEventKind::kOrderExpired)) return;
   if (job.next_tray > 1) return;  // somebody has to clear the bed for the rest
   if (printer != nullptr && !printer->has_bed()) return;
-  job.at_once = false;
-  forget_tries(job);
-  job.held = job.held || job.state == JobState::kApproved;
-  if (job.state == JobState::kApproved) job.reason = "the order to print it at once is an old one";
+  steps_.apply(job, JobEventKind::kOrderExpired);
   store_.save(job, "the daemon was started again: not printed by an order of before");
 }
 
@@ -175,7 +166,7 @@ void JobManager::fail(std::int64_t id, const std::string& why, const std::string
     if (known->control) known->control->cancel();
   }
   if (job->state == JobState::kClaiming) return hold_up(*job, what);
-  end(*job, JobState::kFailed, what,
+  end(*job, JobEventKind::kBroken, what,
       hint.empty() ? "Please report this as a bug, with the daemon's messages." : hint);
 }
 
@@ -255,11 +246,7 @@ void JobManager::start_sending(const JobRecord& approved) {
   JobRecord job = approved;
   PrinterRecord record = store_.printer(job.printer);
   if (printer->has_bed()) record.bed_clear = false;
-  job.state = JobState::kSending;
-  job.reason.clear();
-  job.hint.clear();
-  job.told = job.told_total = 0;
-  if (job.sending_s == 0) job.sending_s = wall_clock_s();
+  steps_.apply(job, JobEventKind::kTrayBegins);
   const bool is_first = job.tries == 0;  // what is tried again was told
   is_first ? store_.save(job, tray_text(job), &record) : store_.save_untold(job, &record);
   std::error_code untold;  // the sender tells where its file cannot be made

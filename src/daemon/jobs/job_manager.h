@@ -16,14 +16,12 @@
 #include "daemon/intake/folder_worker.h"
 #include "daemon/jobs/choose_printer.h"
 #include "daemon/jobs/cleaner.h"
+#include "daemon/jobs/job_steps.h"
 #include "daemon/orders/messages.h"
 #include "daemon/settings/config.h"
 #include "job/store/job_store.h"
 
 namespace packmerger {
-
-// Unix time.
-double wall_clock_s();
 
 // The queues through which the other threads get their orders. The workers share one, and are given
 // no more than they begin at once. Programs have a worker of their own: they are checked in
@@ -117,6 +115,7 @@ class JobManager {
   const DaemonConfig& config() const { return config_; }
   const JobStore& store() const { return store_; }
   const Cleaner& cleaner() const { return cleaner_; }
+  JobSteps& steps() { return steps_; }
   const LiveJob* live(std::int64_t id) const;
   // What keeps a job from being taken, begun or filed, although it is tried; nothing: nothing does.
   std::optional<Trouble> trouble_of(const JobRecord& job) const;
@@ -160,7 +159,7 @@ class JobManager {
   LiveJob* printing_at(const std::string& printer);
   LiveJob& get_printing(const std::string& printer);
   void say(const JobRecord& job, const std::string& text) const;
-  void end(JobRecord& job, JobState state, const std::string& reason, const std::string& hint,
+  void end(JobRecord& job, JobEventKind event, const std::string& reason, const std::string& hint,
            const std::string& note = {}, const PrinterRecord* printer = nullptr);
 
   void recover(JobRecord& job);
@@ -171,18 +170,17 @@ class JobManager {
   void let_worker_go(std::int64_t job);
   void let_sender_go(std::int64_t job);
 
-  JobRecord begun(const PrinterConfig& printer, const std::filesystem::path& origin,
-                  bool with_settings);
+  JobRecord begun(JobEventKind event, const PrinterConfig& printer,
+                  const std::filesystem::path& origin, bool with_settings);
   Queue<FolderOrder>& folder_queue_of(const JobRecord& job);
   void claim(const JobRecord& job);
   bool take_upload(const JobRecord& job, const std::filesystem::path& file);
   void settle(JobRecord job);
   void forget_trouble(std::int64_t id);
-  void forget(const JobRecord& job);
+  void forget(JobRecord job);
   void finish_claim(const JobRecord& job);
   void hold_up(const JobRecord& job, const std::string& trouble);
   void retry_later(LiveJob& live) const;
-  static void forget_tries(JobRecord& job);
   void wait_on(JobRecord& job, const PrinterRecord* printer = nullptr);
   void started_after_all(std::int64_t id);
   FileOrder file_order(const JobRecord& job) const;
@@ -242,6 +240,7 @@ class JobManager {
   JobStore& store_;
   WorkQueues& queues_;
   Log log_;
+  JobSteps steps_;
   Cleaner cleaner_;
   std::map<std::int64_t, LiveJob> live_;
   std::map<std::int64_t, Preparer> preparing_;         // the jobs with the workers

@@ -75,9 +75,9 @@ void JobManager::start_comparing(JobRecord job, const PrinterConfig& wish) {
                                  options.variant.value_or("packed")});
       }
   } catch (const Error& error) {
-    return end(job, JobState::kFailed, printable(error.what()), error.hint());
+    return end(job, JobEventKind::kUnpreparable, printable(error.what()), error.hint());
   }
-  job.state = JobState::kPreparing;
+  steps_.apply(job, JobEventKind::kCompareBegins);
   store_.save(job, "comparing the printers");
   preparing_[job.id] = Preparer::kWorker;
   order.cancel = live_[job.id].cancel_prepare = std::make_shared<std::atomic<bool>>(false);
@@ -113,9 +113,10 @@ void JobManager::propose(JobRecord job, const PrinterConfig& wish,
   const std::optional<std::size_t> best = best_offer(offers, prefer);
   job.choice = json_text(choice_view(offers, prefer, best));
   if (!best)
-    return end(job, JobState::kFailed,
+    return end(job, JobEventKind::kFitsNowhere,
                "It can be printed by none of the printers: " + reasons_of(offers),
                "Scale it down, or add a printer that it fits.");
+  steps_.apply(job, JobEventKind::kProposed);
   job.chosen_by = wish.name;
   job.printer = offers[*best].printer;
   const std::string note = "proposed for " + job.printer + ", the " +

@@ -59,6 +59,7 @@ void JobManager::on(const Hashed& event) {
   std::string note;
   if (job->again_of != 0 && !job->sha256.empty())
     note = "the file was changed since job " + std::to_string(job->again_of);
+  steps_.apply(*job, JobEventKind::kHashed);
   job->sha256 = event.sha256;
   const std::int64_t same = store_.same_bytes(*job);
   if (same != 0 && same != job->again_of) note = "the same bytes as job " + std::to_string(same);
@@ -69,8 +70,7 @@ void JobManager::on(const Hashed& event) {
 void JobManager::on(const Prepared& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   if (job && job->state == JobState::kPreparing) {
-    job->state = JobState::kReady;
-    job->cut_short = 0;
+    steps_.apply(*job, JobEventKind::kPrepared);
     job->trays = event.trays;
     job->estimates = event.estimates;
     job->profile = event.profile;
@@ -92,10 +92,10 @@ void JobManager::on(const PrepareFailed& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   const bool stopped = stopping_ && event.failure.fault == Fault::kInterrupted;
   if (job && job->state == JobState::kPreparing && stopped) {
-    job->state = JobState::kReceived;  // it waits for the next daemon
+    steps_.apply(*job, JobEventKind::kStopped);  // it waits for the next daemon
     store_.save_untold(*job);
   } else if (job && job->state == JobState::kPreparing) {
-    end(*job, JobState::kFailed, sentence(event.failure), event.failure.hint);
+    end(*job, JobEventKind::kPrepareFailed, sentence(event.failure), event.failure.hint);
   }
   let_worker_go(event.job);
 }
@@ -144,31 +144,31 @@ void JobManager::sent(JobRecord job, const SendEnded& event) {
   if (untouched) return waits && is_wanted ? not_started(job, event) : end_untouched(job, event);
   note_told(job);
   if (event.outcome == SendOutcome::kFailed)
-    return end(job, JobState::kFailed, with_told(job, sentence(event.failure)), event.failure.hint);
+    return end(job, JobEventKind::kPrintFailed, with_told(job, sentence(event.failure)),
+               event.failure.hint);
   if (event.outcome == SendOutcome::kCancelled) {
     // a printer that did not obey, whose heaters may be on, is worth telling
     const bool obeyed = event.failure.fault == Fault::kInterrupted && event.failure.hint.empty();
     const std::string tail = obeyed ? "" : ": " + sentence(event.failure);
     if (stopping_)
-      return end(job, JobState::kFailed,
+      return end(job, JobEventKind::kStopped,
                  with_told(job, "the daemon was stopped while printing" + tail),
                  (obeyed ? "" : event.failure.hint + " ") +
                      "Clear the bed and print again with packmerger jobs again " +
                      std::to_string(job.id) + ".");
-    return end(job, JobState::kCancelled, with_told(job, "cancelled while printing" + tail),
-               obeyed ? "" : event.failure.hint);
+    return end(job, JobEventKind::kPrintCancelled,
+               with_told(job, "cancelled while printing" + tail), obeyed ? "" : event.failure.hint);
   }
   job.printed_s += event.printed_s;
   job.paused_s += event.paused_s;
   corrections_.clear();
-  if (handed_over) return end(job, JobState::kHandedOver, "", "", event.note);
+  if (handed_over) return end(job, JobEventKind::kTrayHandedOver, "", "", event.note);
   const std::string note = with_told(job, "tray " + std::to_string(job.next_tray) + " is printed");
-  if (job.next_tray >= job.trays) return end(job, JobState::kDone, "", "", note);
+  if (job.next_tray >= job.trays) return end(job, JobEventKind::kLastTrayPrinted, "", "", note);
   if (live.control && live.control->cancelled() && !live.ended_by_stop)  // in its last moment
-    return end(job, JobState::kCancelled, "cancelled: " + note + ", and no further one", "");
-  ++job.next_tray;
-  job.cut_short = 0;
-  job.state = JobState::kApproved;
+    return end(job, JobEventKind::kPrintCancelled, "cancelled: " + note + ", and no further one",
+               "");
+  steps_.apply(job, JobEventKind::kTrayPrinted);
   store_.save(job, note);
   live_[job.id].failures = 0;
   say(job, note);
@@ -187,8 +187,9 @@ PrinterRecord JobManager::with_bed_as_before(const JobRecord& job, Fault why_not
 void JobManager::end_untouched(JobRecord job, const SendEnded& event) {
   const PrinterRecord record = with_bed_as_before(job, event.failure.fault);
   if (event.outcome == SendOutcome::kFailed)
-    return end(job, JobState::kFailed, sentence(event.failure), event.failure.hint, "", &record);
-  end(job, JobState::kCancelled, "cancelled before the print began", "", "", &record);
+    return end(job, JobEventKind::kPrintFailed, sentence(event.failure), event.failure.hint, "",
+               &record);
+  end(job, JobEventKind::kPrintCancelled, "cancelled before the print began", "", "", &record);
 }
 
 }  // namespace packmerger

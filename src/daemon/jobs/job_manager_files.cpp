@@ -2,6 +2,7 @@
 // touched by their folder workers alone (folder_worker.h).
 #include "base/names.h"
 #include "base/storage/move_file.h"
+#include "base/time/wall_clock.h"
 #include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/job_notes.h"
@@ -29,14 +30,15 @@ Queue<FolderOrder>& JobManager::folder_queue_of(const JobRecord& job) {
   return queues_.folders[fs::path(job.origin).parent_path()].orders;
 }
 
-JobRecord JobManager::begun(const PrinterConfig& printer, const fs::path& origin,
-                            bool with_settings) {
+JobRecord JobManager::begun(JobEventKind event, const PrinterConfig& printer,
+                            const fs::path& origin, bool with_settings) {
   JobRecord job;
+  steps_.apply(job, event);
   job.printer = printer.name;
   job.name = origin.filename().string();
   job.origin = origin.string();
   job.with_settings = with_settings;
-  job.received_s = wall_clock_s();
+  job.received_s = unix_now_s();
   job = store_.add(job);
   job.input = (job_path(job.id) / "input" / job.name).string();
   store_.save(job);
@@ -46,7 +48,8 @@ JobRecord JobManager::begun(const PrinterConfig& printer, const fs::path& origin
 // Recorded, and only then moved.
 void JobManager::on(const Arrived& event) {
   const PrinterConfig* printer = config_.printer(event.printer);
-  if (!stopping_ && printer != nullptr) claim(begun(*printer, event.file, event.with_settings));
+  if (stopping_ || printer == nullptr) return;
+  claim(begun(JobEventKind::kArrived, *printer, event.file, event.with_settings));
 }
 
 void JobManager::claim(const JobRecord& job) {
@@ -60,7 +63,7 @@ void JobManager::on(const Claimed& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   if (job && job->state == JobState::kClaiming) {
     if (event.outcome == ClaimOutcome::kOtherFileSystem) {
-      job->by_copy = true;
+      steps_.apply(*job, JobEventKind::kOnAnotherDisk);
       store_.save(*job);
       return folder_queue_of(*job).push(
           FetchOrder{job->id, job->origin, job->input, job->with_settings, false});
@@ -80,7 +83,7 @@ void JobManager::on(const Fetched& event) {
   if (job && job->state == JobState::kClaiming) {
     if (event.failure && job->again_of != 0) {
       job->input.clear();
-      end(*job, JobState::kFailed, printable(event.failure->what), event.failure->hint);
+      end(*job, JobEventKind::kFileGone, printable(event.failure->what), event.failure->hint);
     } else if (event.failure) {
       return forget(*job);
     } else {
@@ -93,13 +96,14 @@ void JobManager::on(const Fetched& event) {
 
 // The job's file is here, and so are its settings.
 void JobManager::settle(JobRecord job) {
-  job.state = JobState::kReceived;
+  steps_.apply(job, JobEventKind::kTaken);
   store_.save(job);
   forget_trouble(job.id);
   say(job, "received");
 }
 
-void JobManager::forget(const JobRecord& job) {
+void JobManager::forget(JobRecord job) {
+  steps_.apply(job, JobEventKind::kNotTaken);
   std::error_code ignored;
   fs::remove_all(job_path(job.id), ignored);
   store_.forget(job.id);
@@ -110,7 +114,7 @@ void JobManager::forget(const JobRecord& job) {
 void JobManager::finish_claim(const JobRecord& job) {
   const LiveJob* known = live(job.id);
   if (known != nullptr && (known->with_folder_worker || now_s_ < known->retry_s)) return;
-  if (job.input.empty() || !is_there(job.input)) return forget(JobRecord(job));
+  if (job.input.empty() || !is_there(job.input)) return forget(job);
   claim(job);
 }
 
@@ -160,6 +164,7 @@ FileOrder JobManager::file_order(const JobRecord& job) const {
 void JobManager::on(const Placed& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   if (job && !event.failure) {
+    steps_.apply(*job, JobEventKind::kPlaced);
     job->filed = event.to.string();
     store_.save(*job);
     return folder_queue_of(*job).push(file_order(*job));
@@ -172,6 +177,7 @@ void JobManager::on(const Filed& event) {
   std::optional<JobRecord> job = store_.find(event.job);
   if (event.failure && job) {
     if (event.failure->fault == Fault::kBusy) {  // the name was taken meanwhile
+      steps_.apply(*job, JobEventKind::kNameTaken);
       job->filed.clear();
       store_.save(*job);
     } else {
@@ -181,8 +187,7 @@ void JobManager::on(const Filed& event) {
     return;
   }
   if (job) {
-    job->input.clear();
-    job->filing_done = true;
+    steps_.apply(*job, JobEventKind::kFiled);
     store_.save(*job);
   }
   live_.erase(event.job);

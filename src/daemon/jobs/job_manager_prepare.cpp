@@ -107,10 +107,9 @@ void JobManager::start_preparing(const JobRecord& waiting) {
     command = prepare_command(*printer, job);
   } catch (const Error& error) {
     job.folder.clear();
-    return end(job, JobState::kFailed, printable(error.what()), error.hint());
+    return end(job, JobEventKind::kUnpreparable, printable(error.what()), error.hint());
   }
-  ++job.attempt;
-  job.state = JobState::kPreparing;
+  steps_.apply(job, JobEventKind::kPrepareBegins);
   store_.save(job, job.attempt == 1 ? "" : "attempt " + std::to_string(job.attempt));
   preparing_[job.id] = preparer;
   PrepareOrder order;
@@ -136,9 +135,7 @@ bool JobManager::is_approved_by_itself(const JobRecord& ready) const {
 void JobManager::approve_by_itself(const JobRecord& ready) {
   if (!is_approved_by_itself(ready)) return;
   JobRecord job = ready;
-  job.state = JobState::kApproved;
-  job.approved = true;
-  job.reason.clear();
+  steps_.apply(job, JobEventKind::kApproveByItself);
   std::string why = "approved by itself: it is the cheapest way";
   if (job.variant == kProgramVariant) why = "approved by itself: it is printed as it is";
   if (job.at_once) why = "approved by whoever sent it";

@@ -5,7 +5,9 @@
 
 #include "base/names.h"
 #include "base/storage/move_file.h"
+#include "base/time/wall_clock.h"
 #include "daemon/jobs/job_manager.h"
+#include "daemon/jobs/job_refusals.h"
 #include "daemon/settings/model_options.h"
 #include "delivery/child_json.h"
 #include "delivery/job_file.h"
@@ -15,13 +17,6 @@
 
 namespace packmerger {
 namespace {
-
-std::string title(const JobRecord& job) { return "Job " + std::to_string(job.id); }
-
-[[noreturn]] void senseless(const JobRecord& job, const std::string& what,
-                            const std::string& hint) {
-  throw Error(Fault::kUsage, title(job) + " is " + std::string(state_name(job.state)) + what, hint);
-}
 
 // What every job of the same file and for the same printer has in common.
 JobRecord like(const JobRecord& old) {
@@ -33,7 +28,7 @@ JobRecord like(const JobRecord& old) {
   job.chosen_by = old.chosen_by;
   job.choice = old.choice;
   job.wanted = old.wanted;
-  job.received_s = wall_clock_s();
+  job.received_s = unix_now_s();
   return job;
 }
 
@@ -42,26 +37,14 @@ void check_variant(const JobRecord& job, const std::string& variant) {
     throw Error(Fault::kUsage, "There is no variant " + printable(variant),
                 fmt::format("It is one of {}.", fmt::join(variant_names(), ", ")));
   if (is_program(job.name))
-    throw Error(Fault::kUsage, title(job) + " is a program, printed as it is",
+    throw Error(Fault::kUsage, title_of(job) + " is a program, printed as it is",
                 "Only models are prepared in another way.");
   const std::optional<Comparison> ways = comparison_in(job.estimates);
   const Variant way = *variant_named(variant);
   if (ways && !estimate_of(*ways, way))
-    throw Error(Fault::kUsage, title(job) + ": " + printable(why_not(*ways, way)),
+    throw Error(Fault::kUsage, title_of(job) + ": " + printable(why_not(*ways, way)),
                 "packmerger jobs show tells which ways fit; packmerger jobs prepare without one "
                 "compares them anew.");
-}
-
-// Nor does what somebody approved count any more. Its figures stay until there are new ones.
-void forget_what_was_prepared(JobRecord& job) {
-  job.trays = 0;
-  job.tray_files.clear();
-  job.variant.clear();
-  job.cut_short = 0;
-  job.approved = job.at_once = job.pays = false;
-  job.reason.clear();
-  job.hint.clear();
-  job.doubt.clear();
 }
 
 }  // namespace
@@ -83,7 +66,7 @@ JobRecord JobManager::uploaded(const UploadedJob& upload) {
   const std::string name = job_file_name(upload.name);
   check_takes(chosen, name);
   if (stopping_) throw Error(Fault::kBusy, "The daemon is ending", "Try again in a moment.");
-  JobRecord job = begun(chosen, chosen.folder / name, false);
+  JobRecord job = begun(JobEventKind::kUploaded, chosen, chosen.folder / name, false);
   job.at_once = upload.at_once;
   job.held = upload.held;
   if (job.at_once) store_.save(job, "to be printed as soon as it is ready");
@@ -94,19 +77,10 @@ JobRecord JobManager::uploaded(const UploadedJob& upload) {
 
 JobRecord JobManager::approve(std::int64_t id) {
   JobRecord job = get(id);
-  const bool approves = job.state == JobState::kReady;
-  if (!approves && !(job.held && !has_ended(job.state)))
-    senseless(job, " and does not wait for approval",
-              "packmerger jobs show tells what it waits for.");
-  if (approves) {
-    job.state = JobState::kApproved;
-    job.approved = true;
-  }
-  if (job.state == JobState::kApproved) {
-    job.reason.clear();
-    job.at_once = false;  // a person looked at it: no order of before any more
-  }
-  job.held = false;
+  const bool approves = is_possible(job, JobEventKind::kApprove);
+  if (!approves && !(job.held && is_possible(job, JobEventKind::kRelease)))
+    refuse(job, JobEventKind::kApprove);
+  steps_.apply(job, approves ? JobEventKind::kApprove : JobEventKind::kRelease);
   store_.save(job, approves ? "approved" : "no longer held");
   say(job, approves ? "approved" : "no longer held");
   return job;
@@ -114,11 +88,9 @@ JobRecord JobManager::approve(std::int64_t id) {
 
 JobRecord JobManager::hold(std::int64_t id) {
   JobRecord job = get(id);
-  if (has_ended(job.state)) senseless(job, "", "There is nothing to hold any more.");
-  if (job.state == JobState::kSending)
-    senseless(job, " and cannot be held", "Cancel it with packmerger jobs cancel instead.");
+  if (!is_possible(job, JobEventKind::kHold)) refuse(job, JobEventKind::kHold);
   if (job.held) return job;
-  job.held = true;
+  steps_.apply(job, JobEventKind::kHold);
   store_.save(job, "held");
   say(job, "held");
   return job;
@@ -126,12 +98,12 @@ JobRecord JobManager::hold(std::int64_t id) {
 
 JobRecord JobManager::put_first(std::int64_t id) {
   JobRecord job = get(id);
-  if (has_ended(job.state)) senseless(job, "", "packmerger jobs again has it printed once more.");
-  if (job.state == JobState::kSending) senseless(job, "", "It waits for nothing any more.");
+  if (!is_possible(job, JobEventKind::kPutFirst)) refuse(job, JobEventKind::kPutFirst);
   std::int64_t most = 0;
   for (const auto& [other, record] : store_.open_jobs())
     if (other != id) most = std::max(most, record.turn);
   if (job.turn > most) return job;
+  steps_.apply(job, JobEventKind::kPutFirst);
   job.turn = most + 1;
   store_.save(job, "goes before all others that wait");
   say(job, "goes before all others that wait");
@@ -140,19 +112,17 @@ JobRecord JobManager::put_first(std::int64_t id) {
 
 JobRecord JobManager::cancel(std::int64_t id) {
   JobRecord job = get(id);
-  if (has_ended(job.state)) senseless(job, "", "There is nothing to cancel any more.");
-  if (job.state == JobState::kClaiming)
-    throw Error(Fault::kBusy, title(job) + " is just being taken", "Try again in a moment.");
+  if (!is_possible(job, JobEventKind::kCancel)) refuse(job, JobEventKind::kCancel);
   const LiveJob* running = live(id);
   if (job.state == JobState::kSending) {
     // the print first: a disk that is full keeps nobody from ending it
     if (running != nullptr && running->control) running->control->cancel();
-    job.reason = "cancelling";  // for the next daemon, should this one die
+    steps_.apply(job, JobEventKind::kCancel);
     store_.save(job, job.reason);
     say(job, "cancelling");
     return job;
   }
-  end(job, JobState::kCancelled, "cancelled", "Drop the file again to print it after all.");
+  end(job, JobEventKind::kCancel, "cancelled", "Drop the file again to print it after all.");
   if (running != nullptr && running->cancel_prepare) *running->cancel_prepare = true;
   return job;
 }
@@ -183,8 +153,7 @@ JobRecord JobManager::again_of(const JobRecord& ended) const {
 
 JobRecord JobManager::again(std::int64_t id) {
   const JobRecord old = get(id);
-  if (!has_ended(old.state))
-    senseless(old, " and has not ended", "Wait for its end, or cancel it first.");
+  if (!has_ended(old.state)) refuse(old, JobEventKind::kFileAgain);
   get_printer(old.printer);
   if (has_program(old)) return print_again(old);
   return prepare_again(old);
@@ -209,23 +178,18 @@ JobRecord JobManager::prepare(std::int64_t id, const std::string& variant) {
   get_printer(job.printer);
   check_variant(job, variant);
   if (has_ended(job.state)) return prepare_again(job, variant);
-  const bool waits = job.state == JobState::kReady || job.state == JobState::kReceived ||
-                     (job.state == JobState::kApproved && job.next_tray == 1);
-  if (!waits)
-    senseless(job, " and cannot be prepared in another way now",
-              "Wait until it is ready, or cancel it and prepare it again.");
+  if (!is_possible(job, JobEventKind::kPrepareOtherwise) || job.next_tray > 1)
+    refuse(job, JobEventKind::kPrepareOtherwise);
   if (job.input.empty()) {  // it was to print the program of another job
     const JobRecord anew = prepare_again(job, variant);
-    end(job, JobState::kCancelled,
+    end(job, JobEventKind::kReplace,
         "prepared " + variant + " instead, as job " + std::to_string(anew.id), "");
     return anew;
   }
   const std::string note =
       "to be prepared " + variant + (job.approved || job.at_once ? ", and no longer approved" : "");
-  job.state = JobState::kReceived;
+  steps_.apply(job, JobEventKind::kPrepareOtherwise);
   job.wanted = variant;
-  forget_what_was_prepared(job);
-  forget_tries(job);
   forget_trouble(id);
   store_.save(job, note);
   say(job, note);
@@ -243,9 +207,9 @@ JobRecord JobManager::remove(std::int64_t id) {
 JobRecord JobManager::print_again(const JobRecord& old) {
   const JobRecord wanted = again_of(old);
   JobRecord job = wanted;
-  job.state = JobState::kReady;
+  steps_.apply(job, JobEventKind::kProgramAgain);
   job = store_.add(job);
-  job.state = wanted.state;
+  if (wanted.state == JobState::kApproved) steps_.apply(job, JobEventKind::kApprovedBefore);
   if (!job.approved) job.reason = job.doubt;
   store_.save(job, "the program of job " + std::to_string(old.id) + " again" +
                        (job.approved ? "" : ", which nobody had approved"));
@@ -256,6 +220,7 @@ JobRecord JobManager::print_again(const JobRecord& old) {
 JobRecord JobManager::prepare_again(const JobRecord& old, const std::string& wanted) {
   const JobRecord file = with_file(old);
   JobRecord job = like(old);
+  steps_.apply(job, JobEventKind::kFileAgain);
   job.origin = file.origin;
   job.by_copy = true;
   if (!wanted.empty()) job.wanted = wanted;

@@ -1,6 +1,7 @@
 // What fails is tried again, ever less often: told once, and shown until it is over.
 #include "base/names.h"
 #include "base/time/backoff.h"
+#include "base/time/wall_clock.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/waits.h"
 
@@ -9,7 +10,7 @@ namespace packmerger {
 void JobManager::retry_later(LiveJob& live) const {
   const double pause_s = backoff_s(config_.retry_s, live.failures++);
   live.retry_s = now_s_ + pause_s;
-  live.next_s = wall_clock_s() + pause_s;
+  live.next_s = unix_now_s() + pause_s;
 }
 
 // What kept it from its last step does not keep it from the next.
@@ -27,7 +28,7 @@ void JobManager::forget_trouble(std::int64_t id) {
 // Its file cannot be taken or filed.
 void JobManager::hold_up(const JobRecord& job, const std::string& trouble) {
   LiveJob& live = live_[job.id];
-  if (live.trouble.empty()) live.trouble_since_s = wall_clock_s();
+  if (live.trouble.empty()) live.trouble_since_s = unix_now_s();
   if (live.trouble != trouble) say(job, trouble);
   live.trouble = trouble;
   retry_later(live);
@@ -37,15 +38,8 @@ bool JobManager::is_tried_again(const JobRecord& job) {
   return job.state == JobState::kSending && job.tries > 0;
 }
 
-void JobManager::forget_tries(JobRecord& job) {
-  job.trouble.clear();
-  job.trouble_since_s = 0;
-  job.tries = 0;
-}
-
 // As it stood before this try, which was cut short.
 void JobManager::wait_on(JobRecord& job, const PrinterRecord* printer) {
-  job.state = JobState::kApproved;
   job.reason = job.trouble;
   store_.save_untold(job, printer);
 }
@@ -55,9 +49,8 @@ void JobManager::wait_on(JobRecord& job, const PrinterRecord* printer) {
 void JobManager::not_started(JobRecord job, const SendEnded& event) {
   LiveJob& live = live_[job.id];
   const PrinterRecord record = with_bed_as_before(job, event.failure.fault);
-  job.cut_short = 0;
+  steps_.apply(job, JobEventKind::kTrayNotBegun);
   if (live.ended_by_stop && job.tries > 0) return wait_on(job, &record);
-  job.state = JobState::kApproved;
   job.hint = event.failure.hint;
   if (live.ended_by_stop) {
     job.reason = "the daemon was stopped before the print began";
@@ -66,7 +59,7 @@ void JobManager::not_started(JobRecord job, const SendEnded& event) {
   job.reason = printable(event.failure.what);
   const bool is_logged = live.told.contains(job.reason);  // by this daemon
   const bool is_told = is_logged || job.reason == job.trouble;
-  if (job.tries++ == 0) job.trouble_since_s = wall_clock_s();
+  if (job.tries++ == 0) job.trouble_since_s = unix_now_s();
   job.trouble = job.reason;
   is_told ? store_.save_untold(job, &record) : store_.save(job, job.reason, &record);
   live.told.insert(job.reason);
@@ -79,7 +72,7 @@ void JobManager::started_after_all(std::int64_t id) {
   if (found == store_.open_jobs().end() || !is_tried_again(found->second)) return;
   JobRecord job = found->second;
   const std::string tries = job.tries == 1 ? "one try" : std::to_string(job.tries) + " tries";
-  forget_tries(job);
+  steps_.apply(job, JobEventKind::kTrayBegunAfterAll);
   live_[id].told.clear();
   store_.save(job, "started after " + tries + " in vain");
   say(job, "started after all");

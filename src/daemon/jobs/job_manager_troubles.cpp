@@ -25,8 +25,8 @@ Troubles JobManager::folder_troubles(const PrinterConfig& printer) const {
     if (const std::optional<double> since_s = pulse.hangs_since(kNoAnswer_s))
       troubles[which] = {text, *since_s, 0, 0};
   };
-  if (const auto desk = queues_.folders.find(printer.folder); desk != queues_.folders.end())
-    hangs(kFolder, desk->second.pulse,
+  if (const auto queue = queues_.folders.find(printer.folder); queue != queues_.folders.end())
+    hangs(kFolder, queue->second.pulse,
           "its folder does not answer: " + printable(printer.folder.string()));
   if (const auto sender = queues_.handing_over.find(printer.name);
       sender != queues_.handing_over.end())

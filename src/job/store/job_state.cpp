@@ -1,6 +1,9 @@
 #include "job/store/job_state.h"
 
+#include <algorithm>
 #include <array>
+
+#include "job/store/job_transitions.h"
 
 namespace packmerger {
 namespace {
@@ -24,22 +27,9 @@ bool has_ended(JobState state) { return state >= JobState::kDone; }
 bool may_follow(JobState from, JobState to) {
   if (has_ended(from)) return false;
   if (from == to || to == JobState::kFailed || to == JobState::kCancelled) return true;
-  switch (from) {
-    case JobState::kClaiming:
-      return to == JobState::kReceived;
-    case JobState::kReceived:
-      return to == JobState::kPreparing;
-    case JobState::kPreparing:
-      return to == JobState::kReady || to == JobState::kReceived;
-    case JobState::kReady:
-      return to == JobState::kApproved || to == JobState::kReceived;
-    case JobState::kApproved:
-      return to == JobState::kSending || to == JobState::kReceived;
-    case JobState::kSending:
-      return to == JobState::kApproved || to == JobState::kDone || to == JobState::kHandedOver;
-    default:
-      return false;
-  }
+  return std::any_of(kJobTransitions.begin(), kJobTransitions.end(), [&](const JobTransition& row) {
+    return row.from.contains(from) && row.to == to;
+  });
 }
 
 bool may_begin(JobState state) {

@@ -1,11 +1,10 @@
-// The states of a job in the daemon and the steps between them.
+// The states of a job in the daemon; what leads from one to another is the table of
+// job_transitions.h.
 //
 //   claiming → received → preparing → ready → approved → sending → done
 //                                                 ↑___________|    handed_over
 //                                             (the next tray)
 //
-// What is ready or approved can go back to received, to be prepared in another way; so can what is
-// being prepared, when the daemon ends.
 // From every state that has not ended a job can also become failed or cancelled. `claiming` means
 // that its file may still lie in the watched folder; `approved` that it waits for its printer and
 // for a clear bed.
@@ -36,7 +35,8 @@ std::optional<JobState> state_named(std::string_view name);
 // Nothing follows these: done, handed_over, failed, cancelled.
 bool has_ended(JobState state);
 
-// Whether a job may step from one state to another. Staying in a state is allowed until it ended.
+// Whether a job may step from one state to another: where a row leads there, and from every state
+// that has not ended to failed and cancelled. Staying in a state is allowed until it ended.
 bool may_follow(JobState from, JobState to);
 
 // Whether a job may begin there: claiming (a dropped file), received (prepared again from its

@@ -75,20 +75,20 @@ TEST_F(Cleaning, KeepsSoManyAndAllWhereTheSettingsSaySo) {
 
 TEST_F(Cleaning, IsAnnouncedForAWeekAfterAnUpgradeOrALeapOfTheClock) {
   const std::int64_t old = printed(100);
-  for (const double looked_s : {0.0, wall_clock_s() - 40 * kDay_s}) {
+  for (const double looked_s : {0.0, unix_now_s() - 40 * kDay_s}) {
     shop_.store_->remember("cleaning_looked_s", looked_s);
     shop_.start();
     wait();
     EXPECT_TRUE(is_there(old));
     EXPECT_EQ(storage().at("announced").at("jobs"), 1);
-    EXPECT_NEAR(storage().at("announced").at("from_s"), wall_clock_s() + 7 * kDay_s, 600);
+    EXPECT_NEAR(storage().at("announced").at("from_s"), unix_now_s() + 7 * kDay_s, 600);
     EXPECT_THAT(shop_.log_,
                 testing::HasSubstr("the folders of 1 ended jobs are deleted (keep_days"));
   }
   shop_.start();
   wait();
   EXPECT_TRUE(is_there(old)) << "the next start does not end the week";
-  shop_.store_->remember("cleaning_from_s", wall_clock_s() - 1);
+  shop_.store_->remember("cleaning_from_s", unix_now_s() - 1);
   wait();
   EXPECT_FALSE(is_there(old));
   EXPECT_EQ(storage().at("announced"), nullptr);
@@ -104,7 +104,7 @@ TEST_F(Cleaning, TheOldestGoWhereTheDiskGetsFullButNoneOfTheLastDay) {
   DiskSpace disk{std::uint64_t{100} << 30, std::uint64_t{4} << 30};
   std::string log;
   Cleaner cleaner(
-      shop_.config_, *shop_.store_, folder_worker,
+      shop_.config_, *shop_.store_, shop_.job_manager_->steps(), folder_worker,
       [&](const std::string& line) { log += line + "\n"; }, [&](const fs::path&) { return disk; });
   double now_s = 0;
   const auto look = [&](double free_gib) {
@@ -131,8 +131,8 @@ TEST_F(Cleaning, TheLargestUploadFindsRoomOnASmallDisk) {
   Queue<FolderOrder> folder_worker;
   const DiskSpace disk{std::uint64_t{8} << 30, std::uint64_t{5} << 28};
   Cleaner cleaner(
-      shop_.config_, *shop_.store_, folder_worker, [](const std::string&) {},
-      [&](const fs::path&) { return disk; });
+      shop_.config_, *shop_.store_, shop_.job_manager_->steps(), folder_worker,
+      [](const std::string&) {}, [&](const fs::path&) { return disk; });
   cleaner.serve(60);
   EXPECT_TRUE(folder_worker.try_pop());
   EXPECT_GE(cleaner.room()->wanted_bytes,

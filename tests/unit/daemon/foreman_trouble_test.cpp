@@ -125,7 +125,7 @@ TEST_F(TroubleTest, IsSeenWithItsPrinterAsThatOfItsFoldersIs) {
   ended.job = 2;
   shop_.tell(ended);
   EXPECT_EQ(at(0).at("troubles").at(0).at("about"), "handoff_folder");
-  EXPECT_NEAR(at(0).at("troubles").at(0).at("next_s"), wall_clock_s() + 10, 5);
+  EXPECT_NEAR(at(0).at("troubles").at(0).at("next_s"), unix_now_s() + 10, 5);
   shop_.tell(FolderTold{"sim", shop_.config_.printer("sim")->folder,
                         Trouble{"its folder is not there", 5, 4, 99}, 3});
   EXPECT_EQ(times(shop_.log_, "its folder is not there"), 1) << "however many files, and tries";
@@ -142,7 +142,7 @@ TEST_F(TroubleTest, TellsWhenItIsTriedNext) {
   ASSERT_TRUE(shop_.send_order("sim"));
   shop_.tell(not_started("nobody answers"));
   const auto next = [&] { return shop_.view(1).at("trouble").at("next_s"); };
-  EXPECT_NEAR(next(), wall_clock_s() + 10, 5);
+  EXPECT_NEAR(next(), unix_now_s() + 10, 5);
   shop_.job_manager_->hold(1);
   EXPECT_EQ(next(), nullptr) << "nobody tries";
   shop_.job_manager_->cancel(1);

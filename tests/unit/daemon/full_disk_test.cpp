@@ -39,7 +39,7 @@ TEST(FullDiskTest, IsClearedBeforeAnythingIsRecorded) {
   JobRecord job = shop.job(order.job);
   job.ended_s -= 100 * 86400.0;
   shop.store_->save(job);
-  shop.store_->remember("cleaning_looked_s", wall_clock_s() - 2 * 86400.0);  // due to be written
+  shop.store_->remember("cleaning_looked_s", unix_now_s() - 2 * 86400.0);  // due to be written
   const fs::path folder = shop.config_.state / "jobs" / std::to_string(job.id);
   ASSERT_TRUE(fs::exists(folder));
   {
@@ -58,7 +58,7 @@ TEST(FullDiskTest, IsClearedBeforeAnythingIsRecorded) {
   }
   shop.job_manager_->clean(shop.now_s_ += 60);
   EXPECT_GT(shop.job(job.id).deleted_s, 0);
-  EXPECT_NEAR(shop.store_->remembered("cleaning_looked_s").value(), wall_clock_s(), 3600);
+  EXPECT_NEAR(shop.store_->remembered("cleaning_looked_s").value(), unix_now_s(), 3600);
 }
 
 TEST(FullDiskTest, APauseReachesThePrinterAndAResumeOnlyWhereItIsKept) {

@@ -69,6 +69,7 @@ class Workshop {
     queues_ = std::make_unique<WorkQueues>(config_);
     job_manager_ = std::make_unique<JobManager>(
         config_, *store_, *queues_, [this](const std::string& line) { log_ += line + "\n"; });
+    job_manager_->steps().listen(on_step_);
     job_manager_->recover();
     run_claims();
     turn();
@@ -149,6 +150,7 @@ class Workshop {
   std::unique_ptr<WorkQueues> queues_;
   std::unique_ptr<JobManager> job_manager_;
   KeyRing keys_{folder_.path() / "keys.json"};
+  JobSteps::Listener on_step_;
   double now_s_ = 1000;
   int drops_ = 0;
   std::string log_;
