@@ -170,7 +170,7 @@ class Loop {
   }
 
   // An event that could not be recorded stays the first. Thousands may come at once, and each is
-  // written to the disk several times: whoever asks something meanwhile gets his turn.
+  // written to the disk several times: whoever asks something meanwhile gets a turn.
   void take_events(double until_s) {
     while (!unhandled_.empty() && steady_now_s() < until_s) {
       job_manager_.handle(unhandled_.front());

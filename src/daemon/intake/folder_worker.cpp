@@ -26,8 +26,8 @@ std::string sentences(const Failure& failure) {
 
 void FolderWorker::run() {
   for (;;) {
-    while (const std::optional<FolderOrder> order = desk_.orders.try_pop()) carry_out(*order);
-    if (desk_.orders.closed()) return;
+    while (const std::optional<FolderOrder> order = queue_.orders.try_pop()) carry_out(*order);
+    if (queue_.orders.closed()) return;
     look();
     tell_trouble();
     wait();
@@ -35,7 +35,7 @@ void FolderWorker::run() {
 }
 
 void FolderWorker::carry_out(const FolderOrder& order) {
-  const Pulse::Stroke stroke(desk_.pulse);
+  const Pulse::Stroke stroke(queue_.pulse);
   if (const auto* watched = std::get_if<WatchOrder>(&order)) watch(*watched);
   if (const auto* arrived = std::get_if<ClaimOrder>(&order)) events_.push(claim_found(*arrived));
   if (const auto* distant = std::get_if<FetchOrder>(&order)) events_.push(fetch_found(*distant));
@@ -100,7 +100,7 @@ void FolderWorker::let_go(const fs::path& file) {
 void FolderWorker::look() {
   const double now = steady_now_s();
   if (order_.printer.empty() || !offered_.empty() || now < retry_s_) return;
-  const Pulse::Stroke stroke(desk_.pulse);
+  const Pulse::Stroke stroke(queue_.pulse);
   try {
     if (!watch_) watch_ = std::make_unique<WatchFolder>(folder_, order_.rules);
     offer(watch_->look(now));
@@ -162,7 +162,7 @@ void FolderWorker::tell_trouble() {
 }
 
 void FolderWorker::wait() const {
-  std::vector<pollfd> waiting = {{desk_.orders.fd(), POLLIN, 0}};
+  std::vector<pollfd> waiting = {{queue_.orders.fd(), POLLIN, 0}};
   double until_s = steady_now_s() + kLongestWait_s;
   const bool may_look = !order_.printer.empty() && offered_.empty();
   if (may_look) until_s = std::min(until_s, std::max(retry_s_, watch_ ? watch_->next_look_s() : 0));

@@ -1,6 +1,6 @@
-// The folder worker of one folder: looks for files that arrive there, and takes, copies and files
-// those of the jobs that came from it; that of the job folders deletes old ones. He alone touches
-// the folder, so that where its disk hangs nobody waits but who wants something of it.
+// The worker of one folder: looks for files that arrive there, and takes, copies and files those of
+// the jobs that came from it; that of the job folders deletes old ones. It alone touches the
+// folder, so that where its disk hangs nobody waits but who wants something of it.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace packmerger {
 
-// Where a folder worker gets his orders, and others see how he is.
+// Where a folder worker gets its orders, and others see whether it is stuck.
 struct FolderQueue {
   Queue<FolderOrder> orders;
   Pulse pulse;
@@ -25,8 +25,8 @@ struct FolderQueue {
 // Used by one thread, and lives as long as it.
 class FolderWorker {
  public:
-  FolderWorker(std::filesystem::path folder, FolderQueue& desk, Queue<Event>& events)
-      : folder_(std::move(folder)), desk_(desk), events_(events) {}
+  FolderWorker(std::filesystem::path folder, FolderQueue& queue, Queue<Event>& events)
+      : folder_(std::move(folder)), queue_(queue), events_(events) {}
 
   // Until the orders are closed and done.
   void run();
@@ -46,7 +46,7 @@ class FolderWorker {
   void wait() const;
 
   std::filesystem::path folder_;
-  FolderQueue& desk_;
+  FolderQueue& queue_;
   Queue<Event>& events_;
   WatchOrder order_;  // no printer: nothing is watched
   std::unique_ptr<WatchFolder> watch_;

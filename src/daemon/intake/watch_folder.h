@@ -20,7 +20,7 @@ bool is_temporary_name(std::string_view name);
 
 class WatchFolder {
  public:
-  // Makes the folder where it is missing. The watch (inotify) is set before the folder is first
+  // Makes the folder where it is missing. The watch (inotify(7)) is set before the folder is first
   // read, so that nothing falls between. Throws Error{kCannotWrite} when it cannot be made,
   // Error{kIo} when it cannot be read.
   WatchFolder(std::filesystem::path folder, const WatchConfig& rules);

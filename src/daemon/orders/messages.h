@@ -42,7 +42,7 @@ struct PrepareOrder {
   std::shared_ptr<std::atomic<bool>> cancel;
 };
 
-// To the folder worker of a folder (folder_worker.h), who alone touches what lies there: a disk
+// To the worker of a folder (folder_worker.h), which alone touches what lies there: a disk
 // that hangs keeps nobody else waiting.
 struct WatchOrder {     // looks for files that arrive, from now on
   std::string printer;  // whose they are; empty: no longer

@@ -80,7 +80,7 @@ void WebEvents::want_state(Reader& reader) {
   begun_.push({});
 }
 
-bool WebEvents::has_news(const Reader& reader) const {
+bool WebEvents::has_changes_for(const Reader& reader) const {
   if (reader.goes_on) return true;
   if (!reader.seen) return state_look_ > reader.since;
   return reader.wants_changes ? number_ > *reader.seen : state_number_ > *reader.seen;
@@ -92,7 +92,7 @@ std::string WebEvents::event(const char* name, std::uint64_t number,
          "\ndata: " + data + "\n\n";
 }
 
-std::string WebEvents::news(Reader& reader) {
+std::string WebEvents::changes_for(Reader& reader) {
   if (std::exchange(reader.goes_on, false)) return ": goes on\n\n";
   if (!reader.wants_changes) {
     reader.seen = state_number_;
@@ -113,14 +113,14 @@ std::string WebEvents::news(Reader& reader) {
 std::optional<std::string> WebEvents::next(Reader& reader) {
   std::unique_lock lock(mutex_);
   const auto has_ended = [&] { return closed_ || round_ != reader.round; };
-  changed_.wait_for(lock, kQuiet, [&] { return has_ended() || has_news(reader); });
+  changed_.wait_for(lock, kQuiet, [&] { return has_ended() || has_changes_for(reader); });
   if (has_ended()) return std::nullopt;
-  if (!has_news(reader)) return ": still here\n\n";
+  if (!has_changes_for(reader)) return ": still here\n\n";
   if (reader.wants_changes && reader.seen && !is_kept(*reader.seen)) {
     want_state(reader);
     return ": too far behind\n\n";
   }
-  return news(reader);
+  return changes_for(reader);
 }
 
 std::function<std::optional<std::string>()> WebEvents::stream() { return begin({}); }

@@ -32,12 +32,12 @@ class WebEvents {
   void end_streams();  // ends those there are
   void close();        // and lets none begin
 
-  // A stream of server-sent events for one client: the state now, then every change, and a comment
-  // after ten quiet seconds, so that a client that went away is noticed. Nothing where too many
-  // watch already. The stream must not outlive this object.
+  // A stream of server-sent events (HTML Living Standard, section 9.2) for one client: the state
+  // now, then every change, and a comment after ten quiet seconds, so that a client that went away
+  // is noticed. Nothing where too many watch already. The stream must not outlive this object.
   std::function<std::optional<std::string>()> stream();
   // The same, told as changes: the state first and again where some were missed, and its number or
-  // the change's as the event's id. last_id: of the event that the client had last; where all that
+  // the change's as the event's id. last_id: the Last-Event-ID of the client; where all that
   // came after it is still known, it goes on there. Empty or any other text: from the beginning.
   std::function<std::optional<std::string>()> changes(std::string_view last_id);
 
@@ -53,8 +53,8 @@ class WebEvents {
   std::optional<std::string> next(Reader& reader);
   void want_state(Reader& reader);
   bool is_kept(std::uint64_t seen) const;
-  bool has_news(const Reader& reader) const;
-  std::string news(Reader& reader);
+  bool has_changes_for(const Reader& reader) const;
+  std::string changes_for(Reader& reader);
   std::string event(const char* name, std::uint64_t number, const std::string& data) const;
 
   const std::string run_;  // begins every id: a daemon's numbers are not those of the one before

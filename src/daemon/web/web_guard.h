@@ -26,7 +26,7 @@ class WebGuard {
  public:
   // hosts: names by which the daemon is reached beside localhost, this machine's own name, and any
   // numeric address. A name that is none of these is how a foreign page would reach us (DNS
-  // rebinding). trusts_local: whoever asks from this machine may read without a key, and with him
+  // rebinding). trusts_local: whoever asks from this machine may read without a key, and so may
   // everybody behind a proxy there that does not say that it is one.
   WebGuard(std::vector<std::string> hosts, const KeyRing& keys, bool trusts_local);
 

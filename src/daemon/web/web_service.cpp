@@ -95,7 +95,7 @@ void WebService::note_troubles() {
     troubles["web server"] = *trouble;
   if (const auto trouble = mdns_ ? mdns_->trouble() : std::nullopt)
     troubles["announcing printers (mDNS)"] = *trouble;
-  job_manager_.note_troubles("front desk", std::move(troubles));
+  job_manager_.note_troubles("web service", std::move(troubles));
 }
 
 void WebService::open(double now_s) {

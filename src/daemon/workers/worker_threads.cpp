@@ -73,11 +73,11 @@ void WorkerThreads::start_workers(int count) {
 void WorkerThreads::start_folder_workers() {
   for (auto& item : queues_.folders) {
     const std::filesystem::path& folder = item.first;
-    FolderQueue& desk = item.second;
+    FolderQueue& queue = item.second;
     const auto [found, is_new] = folder_workers_.try_emplace(folder);
     if (!is_new) continue;
     found->second.folder = folder.string();
-    start(found->second, [this, folder, &desk] { FolderWorker(folder, desk, events_).run(); });
+    start(found->second, [this, folder, &queue] { FolderWorker(folder, queue, events_).run(); });
   }
 }
 
@@ -102,7 +102,7 @@ std::vector<std::string> WorkerThreads::finish(const std::function<void()>& mean
   queues_.workers.close();
   queues_.checker.close();
   for (auto& [name, orders] : queues_.senders) orders.close();
-  for (auto& [folder, desk] : queues_.folders) desk.orders.close();
+  for (auto& [folder, queue] : queues_.folders) queue.orders.close();
   wait([](const Member& member) { return member.folder.empty(); },
        std::numeric_limits<double>::infinity(), meanwhile);
   wait([](const Member&) { return true; }, steady_now_s() + kPatience_s, meanwhile);

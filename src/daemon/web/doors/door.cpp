@@ -9,7 +9,7 @@ namespace {
 using nlohmann::json;
 
 json result_of(const DoorCall& call, const json& request) {
-  const HttpReply reply = call.desk.ask(request.dump());
+  const HttpReply reply = call.loop.ask(request.dump());
   const json told = json::parse(reply.body, nullptr, false);
   if (reply.status == 200) return told;
   const json error = told.value("error", json::object());
@@ -62,7 +62,7 @@ std::string door_state(const json& printer) {
 
 HttpReply taken(const DoorCall& call, std::string name, const UploadedFile& file,
                 bool wants_print) {
-  return call.desk.take(
+  return call.loop.take(
       {.printer = call.printer, .name = std::move(name), .file = file.path, .held = !wants_print});
 }
 

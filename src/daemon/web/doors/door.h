@@ -21,7 +21,7 @@ inline constexpr const char* kOctoprintApi = "0.1";
 
 struct DoorCall {
   const HttpRequest& request;
-  const LoopProxy& desk;
+  const LoopProxy& loop;
   std::string printer;
   std::string path;  // what stands for {path} in the route: "folder/part.gcode"
 };

@@ -59,11 +59,11 @@ HttpReply no_such_door(const DoorMatch& match) {
 
 bool leads_to_door(const std::string& path) { return path.starts_with(kPrinters); }
 
-BodyPlan plan_at_door(const HttpRequest& request, const LoopProxy& desk, const TakeUpload& room) {
+BodyPlan plan_at_door(const HttpRequest& request, const LoopProxy& loop, const TakeUpload& room) {
   const DoorMatch match = match_of(request);
   if (match.route == nullptr) return no_such_door(match);
   try {
-    printer_at({request, desk, match.printer, match.path});
+    printer_at({request, loop, match.printer, match.path});
   } catch (const Error& error) {
     return door_error(http_status_of(error.exit_code()), error.what() + (". " + error.hint()));
   }
@@ -75,11 +75,11 @@ BodyPlan plan_at_door(const HttpRequest& request, const LoopProxy& desk, const T
   return upload;
 }
 
-HttpReply answer_at_door(const HttpRequest& request, const LoopProxy& desk) {
+HttpReply answer_at_door(const HttpRequest& request, const LoopProxy& loop) {
   const DoorMatch match = match_of(request);
   if (match.route == nullptr) return no_such_door(match);
   try {
-    return in_plain_words(match.route->answer({request, desk, match.printer, match.path}));
+    return in_plain_words(match.route->answer({request, loop, match.printer, match.path}));
   } catch (const Error& error) {
     return door_error(http_status_of(error.exit_code()), error.what() + (". " + error.hint()));
   }

@@ -14,8 +14,8 @@ bool leads_to_door(const std::string& path);
 
 // What is done with the body of a request that has passed the guard: 404 where there is no such
 // route or printer, 415 where its name already tells that it is not taken. `room`: where files go.
-BodyPlan plan_at_door(const HttpRequest& request, const LoopProxy& desk, const TakeUpload& room);
+BodyPlan plan_at_door(const HttpRequest& request, const LoopProxy& loop, const TakeUpload& room);
 
-HttpReply answer_at_door(const HttpRequest& request, const LoopProxy& desk);
+HttpReply answer_at_door(const HttpRequest& request, const LoopProxy& loop);
 
 }  // namespace packmerger

@@ -1,4 +1,5 @@
-// Moonraker's interface, as slicers use it to test a connection and to upload.
+// Moonraker's HTTP API (moonraker.readthedocs.io, "External API"), as slicers use it to test a
+// connection and to upload.
 #include <array>
 
 #include "daemon/web/doors/door.h"

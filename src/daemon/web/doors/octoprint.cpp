@@ -1,4 +1,5 @@
-// OctoPrint's REST interface, as PrusaSlicer, OrcaSlicer and Cura use it.
+// OctoPrint's REST API (docs.octoprint.org, "REST API"), as PrusaSlicer, OrcaSlicer and Cura use
+// it.
 #include <array>
 
 #include "base/error.h"
@@ -143,13 +144,13 @@ HttpReply control_job(const DoorCall& call) {
   const json printer = printer_at(call);
   if (printer["print"].is_null()) return door_error(409, "Nothing is being printed.");
   if (command == "cancel")
-    return done(call.desk.ask(json{{"verb", "jobs.cancel"}, {"id", printer["job"]}}.dump()));
+    return done(call.loop.ask(json{{"verb", "jobs.cancel"}, {"id", printer["job"]}}.dump()));
   std::string action = "toggle";
   if (body.contains("action") && body["action"].is_string())
     action = body["action"].get<std::string>();
   const bool stands = door_state(printer) == "Paused";
   const bool pauses = action == "pause" || (action != "resume" && !stands);
-  return done(call.desk.ask(json{
+  return done(call.loop.ask(json{
       {"verb", pauses ? "printers.pause" : "printers.resume"},
       {"name", call.printer}}.dump()));
 }
@@ -181,7 +182,7 @@ HttpReply upload(const DoorCall& call) {
 
 // The newest job of that name here: names are all that these clients know.
 json job_named(const DoorCall& call) {
-  const HttpReply jobs = call.desk.ask(R"({"verb": "jobs.list", "limit": 1000})");
+  const HttpReply jobs = call.loop.ask(R"({"verb": "jobs.list", "limit": 1000})");
   const json list = json::parse(jobs.body, nullptr, false);
   const json* newest = nullptr;
   if (jobs.status == 200)
@@ -208,7 +209,7 @@ HttpReply command_file(const DoorCall& call) {
   if (printer_at(call)["approve"] != "auto" || has_doubt)
     return door_error(409, "Job " + job["id"].dump() + " waits for approval in PackMerger.");
   if (job["held"] != true) return {.status = 204, .body = {}};
-  return done(call.desk.ask(json{{"verb", "jobs.approve"}, {"id", job["id"]}}.dump()));
+  return done(call.loop.ask(json{{"verb", "jobs.approve"}, {"id", job["id"]}}.dump()));
 }
 
 constexpr std::array kRoutes = {

@@ -1,5 +1,5 @@
-// PrusaLink's interface, as PrusaSlicer uses it: it asks OctoPrint's /api/version, which tells it
-// to upload by PUT.
+// PrusaLink's API (the OpenAPI document of prusa3d/Prusa-Link-Web), as PrusaSlicer uses it: it asks
+// OctoPrint's /api/version, which tells it to upload by PUT.
 #include <array>
 
 #include "daemon/web/doors/door.h"
