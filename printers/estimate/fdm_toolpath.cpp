@@ -68,8 +68,8 @@ std::vector<double> exposed_areas(const FdmSettings& settings, double layer_mm,
   const double shells_mm = settings.shells * settings.line_width_mm;
   const double depth_mm = settings.solid_layers * layer_mm;
   for (const Mesh* part : parts) {
-    for (const auto face : part->faces()) {
-      const auto [a, b, c] = corners(*part, face);
+    for (std::size_t i = 0; i < part->n_triangles(); ++i) {
+      const auto [a, b, c] = part->corners(i);
       const Vec3 normal = (b - a).cross(c - a) / 2;
       const double flat_mm2 = std::abs(normal.z());
       const double wall_mm2 = normal.head<2>().norm();

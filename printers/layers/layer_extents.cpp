@@ -13,17 +13,18 @@ constexpr int kExtentLines = 1 << 16;  // vertical lines for the extents of supp
 // An outline's box is that of the points where it crosses edges.
 void extend_by_matter(const Mesh& part, double layer_mm, LayerExtents& extents) {
   const int count = static_cast<int>(extents.size());
-  for (const auto edge : part.edges()) {
-    Vec3 low = part.point(edge.v0());
-    Vec3 high = part.point(edge.v1());
-    if (low.z() > high.z()) std::swap(low, high);
-    const LayerRange range = layers_between(low.z(), high.z(), layer_mm, count);
-    const Vec2 step = (high - low).head<2>() / (high.z() - low.z());
-    for (int layer = range.first; layer < range.end; ++layer) {
-      const double above_mm = (layer + 0.5) * layer_mm - low.z();
-      extents[layer].extend(Vec2(low.head<2>() + above_mm * step));
+  for (const std::array<int, 3>& triangle : part.triangles())
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& low = part.points()[static_cast<std::size_t>(triangle[k])];
+      const Vec3& high = part.points()[static_cast<std::size_t>(triangle[(k + 1) % 3])];
+      if (!(low.z() < high.z())) continue;  // level, or the other triangle's way along this edge
+      const LayerRange range = layers_between(low.z(), high.z(), layer_mm, count);
+      const Vec2 step = (high - low).head<2>() / (high.z() - low.z());
+      for (int layer = range.first; layer < range.end; ++layer) {
+        const double above_mm = (layer + 0.5) * layer_mm - low.z();
+        extents[layer].extend(Vec2(low.head<2>() + above_mm * step));
+      }
     }
-  }
 }
 
 // How far the support reaches in x and y, in each layer.

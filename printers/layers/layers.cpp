@@ -17,7 +17,7 @@ int layer_count(double height_mm, double layer_mm) {
 double top_of(const std::vector<const Mesh*>& parts) {
   double top_mm = 0;
   for (const Mesh* part : parts)
-    if (part->n_vertices() > 0) top_mm = std::max(top_mm, bounding_box(*part).max().z());
+    if (!part->empty()) top_mm = std::max(top_mm, bounding_box(*part).max().z());
   return top_mm;
 }
 

@@ -17,45 +17,47 @@ class Cut {
 
   void run() {
     for (std::size_t i = 0; i < facets_.size(); ++i)
-      if (!seen_[i]) trace(Mesh::FaceHandle(facets_[i]));
+      if (!seen_[i]) trace(facets_[i]);
   }
 
  private:
-  bool above(Mesh::VertexHandle vertex) const { return part_.point(vertex).z() >= z_mm_; }
+  const Vec3& corner(int facet, int k) const {
+    return part_.points()[part_.triangles()[facet][k % 3]];
+  }
+  bool above(const Vec3& point) const { return point.z() >= z_mm_; }
 
-  // The facet's half-edge along which the outline, matter on its left, leaves it: the one that goes
-  // up through the plane. Invalid where the plane misses the facet.
-  Mesh::HalfedgeHandle exit_of(Mesh::FaceHandle facet) const {
-    for (const auto edge : part_.fh_range(facet))
-      if (!above(part_.from_vertex_handle(edge)) && above(part_.to_vertex_handle(edge)))
-        return edge;
-    return Mesh::HalfedgeHandle();
+  // The number of the facet's edge along which the outline, matter on its left, leaves it: the one
+  // that goes up through the plane. -1 where the plane misses the facet.
+  int exit_of(int facet) const {
+    for (int k = 0; k < 3; ++k)
+      if (!above(corner(facet, k)) && above(corner(facet, k + 1))) return k;
+    return -1;
   }
 
-  Vec2 point_on(Mesh::HalfedgeHandle edge) const {
-    const Vec3& low = part_.point(part_.from_vertex_handle(edge));
-    const Vec3& high = part_.point(part_.to_vertex_handle(edge));
+  Vec2 point_on(int facet, int edge) const {
+    const Vec3& low = corner(facet, edge);
+    const Vec3& high = corner(facet, edge + 1);
     return (low + (high - low) * ((z_mm_ - low.z()) / (high.z() - low.z()))).head<2>();
   }
 
-  void mark(Mesh::FaceHandle facet) {
-    seen_[std::lower_bound(facets_.begin(), facets_.end(), facet.idx()) - facets_.begin()] = true;
+  void mark(int facet) {
+    seen_[std::lower_bound(facets_.begin(), facets_.end(), facet) - facets_.begin()] = true;
   }
 
   // Follows one contour from facet to facet until it is closed.
-  void trace(Mesh::FaceHandle start) {
-    Mesh::HalfedgeHandle edge = exit_of(start);
-    if (!edge.is_valid()) return;
+  void trace(int start) {
+    int edge = exit_of(start);
+    if (edge < 0) return;
     Contour contour;
-    const Vec2 origin = point_on(edge);  // near the contour, for precision
+    const Vec2 origin = point_on(start, edge);  // near the contour, for precision
     Vec2 previous = origin;
     double twice_area = 0;
-    for (Mesh::FaceHandle facet = start;;) {
+    for (int facet = start;;) {
       mark(facet);
       contour.box.extend(previous);
-      facet = part_.opposite_face_handle(edge);
+      facet = part_.neighbours()[facet][edge];
       edge = exit_of(facet);
-      const Vec2 next = point_on(edge);
+      const Vec2 next = point_on(facet, edge);
       contour.perimeter_mm += (next - previous).norm();
       const Vec2 a = previous - origin;
       const Vec2 b = next - origin;
@@ -77,13 +79,13 @@ class Cut {
 // For each layer the facets it meets, sorted.
 std::vector<std::vector<int>> facets_by_layer(const Mesh& part, double layer_mm, int count) {
   std::vector<std::vector<int>> facets(count);
-  for (const auto face : part.faces()) {
-    const auto [a, b, c] = corners(part, face);
+  for (std::size_t i = 0; i < part.n_triangles(); ++i) {
+    const auto [a, b, c] = part.corners(i);
     const auto [low, high] = std::minmax({a.z(), b.z(), c.z()});
     // one layer more on either side: rounding decides nothing here, Cut does
     const LayerRange range = layers_between(low, high, layer_mm, count);
     for (int layer = std::max(0, range.first - 1); layer < std::min(count, range.end + 1); ++layer)
-      facets[layer].push_back(face.idx());
+      facets[layer].push_back(static_cast<int>(i));
   }
   return facets;
 }
@@ -117,10 +119,10 @@ std::vector<Island> islands_of(const Layer& layer) {
 
 Layer slice_at(const Mesh& part, double z_mm) {
   std::vector<int> met;
-  for (const auto face : part.faces()) {
-    const auto [a, b, c] = corners(part, face);
+  for (std::size_t i = 0; i < part.n_triangles(); ++i) {
+    const auto [a, b, c] = part.corners(i);
     const auto [low, high] = std::minmax({a.z(), b.z(), c.z()});
-    if (low <= z_mm && z_mm <= high) met.push_back(face.idx());
+    if (low <= z_mm && z_mm <= high) met.push_back(static_cast<int>(i));
   }
   Layer layer;
   Cut(part, z_mm, met, layer).run();

@@ -67,8 +67,8 @@ std::vector<Facet> facets_of(const std::vector<const Mesh*>& parts, const Roundi
                              double support_angle) {
   std::vector<Facet> facets;
   for (const Mesh* part : parts) {
-    for (const auto face : part->faces()) {
-      const auto [a, b, c] = corners(*part, face);
+    for (std::size_t i = 0; i < part->n_triangles(); ++i) {
+      const auto [a, b, c] = part->corners(i);
       const Vec3 normal = (b - a).cross(c - a);
       Facet facet{{rounding.corner(a), rounding.corner(b), rounding.corner(c)},
                   {a.z(), b.z(), c.z()},

@@ -23,6 +23,13 @@ struct WrittenTray {
   std::vector<int> order;                // indices into parts
 };
 
+std::vector<Vec3> exact(const std::vector<Eigen::Vector3f>& rounded) {
+  std::vector<Vec3> points;
+  points.reserve(rounded.size());
+  for (const Eigen::Vector3f& point : rounded) points.push_back(point.cast<double>());
+  return points;
+}
+
 std::vector<WrittenTray> written(const Arrangement& arrangement) {
   std::vector<WrittenTray> trays(static_cast<std::size_t>(arrangement.trays));
   for (const JobPart& part : arrangement.parts) {
@@ -38,9 +45,7 @@ std::vector<WrittenTray> written(const Arrangement& arrangement) {
     for (const Mesh& part : tray.parts) meshes.push_back(&part);
     const auto points = float_points(meshes);
     for (std::size_t i = 0; i < tray.parts.size(); ++i)
-      for (const auto vertex : tray.parts[i].vertices())
-        tray.parts[i].set_point(vertex,
-                                points[i][static_cast<std::size_t>(vertex.idx())].cast<double>());
+      tray.parts[i] = tray.parts[i].with_points(exact(points[i]));
     for (const int id : arrangement.removal_order) {
       const auto at = std::find(tray.ids.begin(), tray.ids.end(), id);
       if (at != tray.ids.end()) tray.order.push_back(static_cast<int>(at - tray.ids.begin()));

@@ -1,71 +1,92 @@
 #include "model/mesh.h"
 
-#include <string>
+#include <algorithm>
+#include <utility>
 
-#include "base/error.h"
+#include "model/half_edges.h"
 
 namespace packmerger {
+namespace {
 
-std::array<Vec3, 3> corners(const Mesh& mesh, Mesh::FaceHandle face) {
-  const auto first = mesh.halfedge_handle(face);
-  const auto second = mesh.next_halfedge_handle(first);
-  return {mesh.point(mesh.from_vertex_handle(first)), mesh.point(mesh.to_vertex_handle(first)),
-          mesh.point(mesh.to_vertex_handle(second))};
+// By OpenMesh's half-edges: a face's begin with that from its third corner to its first.
+std::vector<std::array<int, 3>> neighbours_in(const HalfEdges& edges) {
+  std::vector<std::array<int, 3>> neighbours;
+  neighbours.reserve(edges.n_faces());
+  for (const auto face : edges.faces()) {
+    const auto last = face.halfedge();
+    const auto first = last.next();
+    neighbours.push_back(
+        {first.opp().face().idx(), first.next().opp().face().idx(), last.opp().face().idx()});
+  }
+  return neighbours;
 }
 
-Mesh closed_mesh(const TriangleSoup& soup) {
-  const auto refuse = [](const std::string& why) {
-    throw Error(Fault::kBadInput, "The surface is not a closed 2-manifold: " + why,
-                "Repair the model in a mesh editor and try again.");
-  };
-  Mesh mesh;
-  mesh.reserve(soup.points.size(), soup.triangles.size() * 3 / 2, soup.triangles.size());
-  std::vector<bool> used(soup.points.size(), false);
-  for (const std::array<int, 3>& triangle : soup.triangles)
-    for (const int corner : triangle) used[corner] = true;
-  std::vector<Mesh::VertexHandle> vertices(soup.points.size());
-  for (std::size_t i = 0; i < soup.points.size(); ++i)
-    if (used[i]) vertices[i] = mesh.add_vertex(soup.points[i]);
+}  // namespace
 
-  // OpenMesh writes to stderr when it must refuse a face, so what it would refuse is found first
-  // by is_boundary tests: each corner needs a gap, each directed edge must be free.
-  std::vector<Mesh::VertexHandle> corner(3);
-  for (const std::array<int, 3>& triangle : soup.triangles) {
-    for (int i = 0; i < 3; ++i) corner[i] = vertices[triangle[i]];
-    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
-      refuse("a triangle has a corner twice");
-    for (int i = 0; i < 3; ++i) {
-      if (!mesh.is_boundary(corner[i])) refuse("two sheets touch at a vertex");
-      const auto edge = mesh.find_halfedge(corner[i], corner[(i + 1) % 3]);
-      if (edge.is_valid() && !mesh.is_boundary(edge)) refuse("an edge has more than two sides");
-    }
-    if (!mesh.add_face(corner).is_valid()) refuse("two sheets touch at a vertex");
-  }
-  for (const auto edge : mesh.edges())
-    if (mesh.is_boundary(edge)) refuse("it has holes");
+Mesh::Mesh() {
+  static const auto no_points = std::make_shared<const std::vector<Vec3>>();
+  static const auto no_faces = std::make_shared<const Faces>();
+  points_ = no_points;
+  faces_ = no_faces;
+}
+
+Mesh::Mesh(std::vector<Vec3> points, Faces faces)
+    : points_(std::make_shared<const std::vector<Vec3>>(std::move(points))),
+      faces_(std::make_shared<const Faces>(std::move(faces))) {}
+
+Mesh Mesh::with_points(std::vector<Vec3> points) const {
+  Mesh mesh;
+  mesh.points_ = std::make_shared<const std::vector<Vec3>>(std::move(points));
+  mesh.faces_ = faces_;
   return mesh;
 }
 
-TriangleSoup to_soup(const Mesh& mesh) {
-  TriangleSoup soup;
-  soup.points.reserve(mesh.n_vertices());
-  soup.triangles.reserve(mesh.n_faces());
-  for (const auto vertex : mesh.vertices()) soup.points.push_back(mesh.point(vertex));
-  for (const auto face : mesh.faces()) {
-    std::array<int, 3> triangle{};
-    int i = 0;
-    for (const auto vertex : face.vertices_ccw()) triangle[i++] = vertex.idx();
-    soup.triangles.push_back(triangle);
+TriangleSoup without_unused_points(TriangleSoup soup) {
+  std::vector<int> number(soup.points.size(), -1);
+  for (const auto& triangle : soup.triangles)
+    for (const int corner : triangle) number[corner] = 0;
+  if (std::find(number.begin(), number.end(), -1) == number.end()) return soup;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<int>(kept);
+    soup.points[kept++] = soup.points[i];
   }
+  soup.points.resize(kept);
+  for (auto& triangle : soup.triangles)
+    for (int& corner : triangle) corner = number[corner];
   return soup;
 }
 
+Mesh manifold_mesh(TriangleSoup soup) {
+  soup = without_unused_points(std::move(soup));
+  Mesh::Faces faces;
+  faces.neighbours = neighbours_in(half_edges(soup));
+  faces.are_closed =
+      std::none_of(faces.neighbours.begin(), faces.neighbours.end(), [](const auto& beside) {
+        return std::find(beside.begin(), beside.end(), -1) != beside.end();
+      });
+  faces.corners = std::move(soup.triangles);
+  return Mesh(std::move(soup.points), std::move(faces));
+}
+
+Mesh closed_mesh(TriangleSoup soup) {
+  Mesh mesh = manifold_mesh(std::move(soup));
+  if (!mesh.is_closed()) refuse_surface("it has holes");
+  return mesh;
+}
+
+TriangleSoup to_soup(const TriangleView& surface) {
+  return {{surface.points.begin(), surface.points.end()},
+          {surface.triangles.begin(), surface.triangles.end()}};
+}
+
 double volume_mm3(const Mesh& mesh) {
-  if (mesh.n_vertices() == 0) return 0;
-  const Vec3 origin = mesh.point(Mesh::VertexHandle(0));  // near the surface, for precision
+  if (mesh.empty()) return 0;
+  const Vec3& origin = mesh.points().front();  // near the surface, for precision
   double six_volumes = 0;
-  for (const auto face : mesh.faces()) {
-    const auto [a, b, c] = corners(mesh, face);
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto [a, b, c] = mesh.corners(i);
     six_volumes += (a - origin).dot((b - origin).cross(c - origin));
   }
   return six_volumes / 6;
@@ -73,8 +94,8 @@ double volume_mm3(const Mesh& mesh) {
 
 double area_mm2(const Mesh& mesh) {
   double twice = 0;
-  for (const auto face : mesh.faces()) {
-    const auto [a, b, c] = corners(mesh, face);
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto [a, b, c] = mesh.corners(i);
     twice += (b - a).cross(c - a).norm();
   }
   return twice / 2;
@@ -82,26 +103,35 @@ double area_mm2(const Mesh& mesh) {
 
 Box3 bounding_box(const Mesh& mesh) {
   Box3 box;
-  for (const auto vertex : mesh.vertices()) box.extend(mesh.point(vertex));
+  for (const Vec3& point : mesh.points()) box.extend(point);
   return box;
 }
 
 Mesh transformed(const Mesh& mesh, const Pose& pose) {
-  Mesh result = mesh;
-  for (const auto vertex : result.vertices()) result.set_point(vertex, pose * mesh.point(vertex));
-  return result;
+  std::vector<Vec3> points;
+  points.reserve(mesh.n_points());
+  for (const Vec3& point : mesh.points()) points.push_back(pose * point);
+  return mesh.with_points(std::move(points));
 }
 
 Mesh united(const std::vector<const Mesh*>& meshes) {
-  TriangleSoup all;
+  if (meshes.size() == 1) return *meshes.front();
+  std::vector<Vec3> points;
+  Mesh::Faces faces;
   for (const Mesh* mesh : meshes) {
-    const int base = static_cast<int>(all.points.size());
-    const TriangleSoup one = to_soup(*mesh);
-    all.points.insert(all.points.end(), one.points.begin(), one.points.end());
-    for (const auto& [a, b, c] : one.triangles)
-      all.triangles.push_back({a + base, b + base, c + base});
+    const int first_point = static_cast<int>(points.size());
+    const int first_face = static_cast<int>(faces.corners.size());
+    points.insert(points.end(), mesh->points().begin(), mesh->points().end());
+    for (const auto& [a, b, c] : mesh->triangles())
+      faces.corners.push_back({a + first_point, b + first_point, c + first_point});
+    for (std::array<int, 3> beside : mesh->neighbours()) {
+      for (int& face : beside)
+        if (face >= 0) face += first_face;
+      faces.neighbours.push_back(beside);
+    }
+    faces.are_closed = faces.are_closed && mesh->is_closed();
   }
-  return closed_mesh(all);
+  return Mesh(std::move(points), std::move(faces));
 }
 
 }  // namespace packmerger

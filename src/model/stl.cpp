@@ -68,8 +68,8 @@ void append_floats(std::string& bytes, const Eigen::Vector3f& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), 3 * sizeof(float));
 }
 
-Eigen::Vector3f unit_normal(const Mesh& mesh, Mesh::FaceHandle face) {
-  const auto [a, b, c] = corners(mesh, face);
+Eigen::Vector3f unit_normal(const Mesh& mesh, std::size_t triangle) {
+  const auto [a, b, c] = mesh.corners(triangle);
   const Vec3 normal = (b - a).cross(c - a);
   const double length = normal.norm();
   if (length <= 0) return Eigen::Vector3f::Zero();
@@ -83,9 +83,9 @@ std::vector<std::vector<Eigen::Vector3f>> float_points(const std::vector<const M
   std::vector<std::vector<Eigen::Vector3f>> all;
   for (const Mesh* mesh : meshes) {
     std::vector<Eigen::Vector3f>& points = all.emplace_back();
-    points.reserve(mesh->n_vertices());
-    for (const auto vertex : mesh->vertices()) {
-      Eigen::Vector3f point = rounded(mesh->point(vertex));
+    points.reserve(mesh->n_points());
+    for (const Vec3& exact : mesh->points()) {
+      Eigen::Vector3f point = rounded(exact);
       if (taken.contains(bits_of(point))) point = moved_aside(point, taken);
       taken.insert(bits_of(point));
       points.push_back(point);
@@ -97,16 +97,16 @@ std::vector<std::vector<Eigen::Vector3f>> float_points(const std::vector<const M
 std::string binary_stl(const std::vector<const Mesh*>& meshes) {
   const auto points = float_points(meshes);
   std::uint32_t triangles = 0;
-  for (const Mesh* mesh : meshes) triangles += static_cast<std::uint32_t>(mesh->n_faces());
+  for (const Mesh* mesh : meshes) triangles += static_cast<std::uint32_t>(mesh->n_triangles());
 
   std::string bytes = "PackMerger, binary STL, mm";  // must not begin with "solid"
   bytes.resize(80, ' ');
   bytes.reserve(84 + std::size_t{50} * triangles);
   bytes.append(reinterpret_cast<const char*>(&triangles), sizeof triangles);
   for (std::size_t m = 0; m < meshes.size(); ++m)
-    for (const auto face : meshes[m]->faces()) {
-      append_floats(bytes, unit_normal(*meshes[m], face));
-      for (const auto vertex : face.vertices_ccw()) append_floats(bytes, points[m][vertex.idx()]);
+    for (std::size_t t = 0; t < meshes[m]->n_triangles(); ++t) {
+      append_floats(bytes, unit_normal(*meshes[m], t));
+      for (const int corner : meshes[m]->triangles()[t]) append_floats(bytes, points[m][corner]);
       bytes.append(2, '\0');
     }
   return bytes;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/half_edges.h"
 #include "offscreen/offscreen.h"
 #include "offscreen/surface.h"
 
@@ -64,35 +65,35 @@ Eigen::Matrix<std::uint8_t, 4, 1> lit(const Colour& colour, double light) {
 }
 
 std::vector<Vec3> area_normals(const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.n_faces());
-  for (const auto face : mesh.faces()) {
-    const auto [a, b, c] = corners(mesh, face);
-    normals[face.idx()] = (b - a).cross(c - a);
+  std::vector<Vec3> normals(mesh.n_triangles());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const auto [a, b, c] = mesh.corners(i);
+    normals[i] = (b - a).cross(c - a);
   }
   return normals;
 }
 
 // The area-weighted mean normal round a corner of `face`, over the faces that turn little from it.
-Vec3 corner_normal(const Mesh& mesh, const std::vector<Vec3>& normals, Mesh::FaceHandle face,
-                   Mesh::VertexHandle vertex) {
-  const Vec3 own = normals[face.idx()].normalized();
-  Vec3 sum = normals[face.idx()];
-  for (const auto other : mesh.vf_range(vertex))
-    if (other != face && normals[other.idx()].normalized().dot(own) > kCreaseCosine)
+Vec3 corner_normal(const HalfEdges& edges, const std::vector<Vec3>& normals, int face, int corner) {
+  const Vec3 own = normals[face].normalized();
+  Vec3 sum = normals[face];
+  for (const auto other : edges.vf_range(HalfEdges::VertexHandle(corner)))
+    if (other.idx() != face && normals[other.idx()].normalized().dot(own) > kCreaseCosine)
       sum += normals[other.idx()];
   return sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(0, 0, 1);
 }
 
 std::vector<Vertex> lit_triangles(const SceneMesh& item, const Camera& camera) {
   const Lights lights = lights_of(camera);
-  const Mesh& mesh = *item.mesh;
+  const Mesh& mesh = item.mesh;
+  const HalfEdges edges = half_edges(mesh);
   const std::vector<Vec3> normals = area_normals(mesh);
   std::vector<Vertex> vertices;
-  vertices.reserve(3 * mesh.n_faces());
-  for (const auto face : mesh.faces())
-    for (const auto vertex : mesh.fv_range(face)) {
-      const Vec3 point = item.pose * mesh.point(vertex);
-      Vec3 normal = item.pose.linear() * corner_normal(mesh, normals, face, vertex);
+  vertices.reserve(3 * mesh.n_triangles());
+  for (int face = 0; face < static_cast<int>(mesh.n_triangles()); ++face)
+    for (const int corner : mesh.triangles()[face]) {
+      const Vec3 point = item.pose * mesh.points()[corner];
+      Vec3 normal = item.pose.linear() * corner_normal(edges, normals, face, corner);
       if (normal.dot(camera.eye - point) < 0) normal = -normal;
       vertices.push_back({point.cast<float>(), lit(item.colour, brightness(normal, lights))});
     }
@@ -103,8 +104,7 @@ std::vector<Vertex> lit_triangles(const SceneMesh& item, const Camera& camera) {
 Box3 box_of(const Scene& scene) {
   Box3 box;
   for (const SceneMesh& item : scene.meshes)
-    for (const auto vertex : item.mesh->vertices())
-      box.extend(item.pose * item.mesh->point(vertex));
+    for (const Vec3& point : item.mesh.points()) box.extend(item.pose * point);
   for (const SceneLine& line : scene.lines) {
     box.extend(line.a);
     box.extend(line.b);

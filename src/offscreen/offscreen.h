@@ -19,7 +19,7 @@ struct Colour {
 };
 
 struct SceneMesh {
-  const Mesh* mesh = nullptr;
+  Mesh mesh;
   Colour colour;
   Pose pose = Pose::Identity();  // mesh → scene
 };

@@ -61,16 +61,16 @@ double support_normal_limit(double support_angle) {
   return -std::sin(support_angle) - kNormalTolerance;
 }
 
-std::vector<Crossing> sorted_crossings(const std::vector<TriangleSoup>& surfaces, double step_mm,
+std::vector<Crossing> sorted_crossings(const std::vector<Mesh>& surfaces, double step_mm,
                                        double support_angle) {
   const double limit = support_normal_limit(support_angle);
   std::vector<Crossing> crossings;
-  for (const TriangleSoup& surface : surfaces)
-    for (const auto& [a, b, c] : surface.triangles)
-      add_crossings(
-          {surface.points[static_cast<std::size_t>(a)], surface.points[static_cast<std::size_t>(b)],
-           surface.points[static_cast<std::size_t>(c)]},
-          step_mm, limit, crossings);
+  for (const Mesh& surface : surfaces)
+    for (const auto& [a, b, c] : surface.triangles())
+      add_crossings({surface.points()[static_cast<std::size_t>(a)],
+                     surface.points()[static_cast<std::size_t>(b)],
+                     surface.points()[static_cast<std::size_t>(c)]},
+                    step_mm, limit, crossings);
   // Of two crossings at one height the way out comes first: touching matter leaves no void.
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return std::tie(a.row, a.column, a.z, a.enters) < std::tie(b.row, b.column, b.z, b.enters);
@@ -78,7 +78,7 @@ std::vector<Crossing> sorted_crossings(const std::vector<TriangleSoup>& surfaces
   return crossings;
 }
 
-ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double step_mm,
+ColumnSupport column_support(const std::vector<Mesh>& surfaces, double step_mm,
                              double support_angle, double plate_mm) {
   const std::vector<Crossing> crossings = sorted_crossings(surfaces, step_mm, support_angle);
   ColumnSupport lengths;

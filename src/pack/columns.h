@@ -18,7 +18,7 @@ struct ColumnSupport {
 // below a facet that needs support, down to the first matter below or to the plate at plate_mm.
 // A facet needs support when its normal points down by more than support_angle (radians) below the
 // horizontal. The surfaces must be closed, normals outward, and must not overlap.
-ColumnSupport column_support(const std::vector<TriangleSoup>& surfaces, double step_mm,
+ColumnSupport column_support(const std::vector<Mesh>& surfaces, double step_mm,
                              double support_angle, double plate_mm);
 
 // Where a vertical line through a cell's centre passes through a facet.
@@ -32,7 +32,7 @@ struct Crossing {
 
 // All of them for closed surfaces, by row, column and height; of two at one height the way out of
 // matter comes first. As above, but surfaces that touch along facets may be given.
-std::vector<Crossing> sorted_crossings(const std::vector<TriangleSoup>& surfaces, double step_mm,
+std::vector<Crossing> sorted_crossings(const std::vector<Mesh>& surfaces, double step_mm,
                                        double support_angle);
 
 // The z component of a facet's unit normal below which it needs support.

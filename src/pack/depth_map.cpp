@@ -31,9 +31,9 @@ void allocate(DepthMaps& maps) {
   maps.hangs.assign(cells(maps), 0);
 }
 
-DepthMaps empty_maps_around(const TriangleSoup& surface, double grid) {
+DepthMaps empty_maps_around(const Mesh& surface, double grid) {
   DepthMaps maps;
-  for (const Vec3& point : surface.points) maps.box.extend(point);
+  for (const Vec3& point : surface.points()) maps.box.extend(point);
   const Vec3 low = maps.box.min() / grid;
   const Vec3 high = maps.box.max() / grid;
   maps.x0 = static_cast<int>(std::floor(low.x() + kCellTolerance));
@@ -224,11 +224,11 @@ class Rasterizer {
 };
 
 template <bool kExtents>
-DepthMaps drawn(const TriangleSoup& surface, double grid_mm, double support_angle) {
+DepthMaps drawn(const Mesh& surface, double grid_mm, double support_angle) {
   DepthMaps maps = empty_maps_around(surface, grid_mm);
-  const std::vector<CellPoint> points = in_cells(surface.points, grid_mm, maps);
+  const std::vector<CellPoint> points = in_cells(surface.points(), grid_mm, maps);
   Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
-  for (const auto& triangle : surface.triangles) {
+  for (const auto& triangle : surface.triangles()) {
     const CellPoint& a = points[static_cast<std::size_t>(triangle[0])];
     const CellPoint& b = points[static_cast<std::size_t>(triangle[1])];
     const CellPoint& c = points[static_cast<std::size_t>(triangle[2])];
@@ -262,15 +262,15 @@ DepthMaps once_turned(const DepthMaps& maps) {
 
 }  // namespace
 
-DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
+DepthMaps draw_depth_maps(const Mesh& surface, double grid_mm, double support_angle) {
   return drawn<true>(surface, grid_mm, support_angle);
 }
 
-DepthMaps draw_centre_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
+DepthMaps draw_centre_maps(const Mesh& surface, double grid_mm, double support_angle) {
   return drawn<false>(surface, grid_mm, support_angle);
 }
 
-DepthMaps draw_sampled_maps(const TriangleSoup& surface, double grid_mm, double support_angle) {
+DepthMaps draw_sampled_maps(const Mesh& surface, double grid_mm, double support_angle) {
   const DepthMaps fine = draw_centre_maps(surface, grid_mm / 2, support_angle);
   const auto half = [](int cells) { return cells >= 0 ? cells / 2 : (cells - 1) / 2; };
   DepthMaps maps;

@@ -32,16 +32,16 @@ struct DepthMaps {
 // triangles, but for rounding to float and for what reaches less than 1e-7 cells into a cell.
 // Orthographic projection along z. A facet hangs when its normal points down by more than
 // support_angle (radians) below the horizontal.
-DepthMaps draw_depth_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
+DepthMaps draw_depth_maps(const Mesh& surface, double grid_mm, double support_angle);
 
 // The samples at the centres alone, a few times faster: nothing is in `low` and `top`.
-DepthMaps draw_centre_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
+DepthMaps draw_centre_maps(const Mesh& surface, double grid_mm, double support_angle);
 
 // The surface as a search on coarse cells sees it: `low` and `top` are the least and greatest of
 // samples at a quarter of a cell to both sides of the centre, so that matter takes half a cell more
 // room than it has, which on average is room for a gap of that width; the samples are taken a
 // quarter of a cell off the centre.
-DepthMaps draw_sampled_maps(const TriangleSoup& surface, double grid_mm, double support_angle);
+DepthMaps draw_sampled_maps(const Mesh& surface, double grid_mm, double support_angle);
 
 // The same item turned by quarters × 90° about z: cells map to cells.
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters);

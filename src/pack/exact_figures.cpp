@@ -39,12 +39,12 @@ void measure(const PackProblem& problem, Packing& packing) {
   packing.cost = 0;
   for (int tray = 0; tray < trays; ++tray) {
     TrayMeasure& figures = packing.trays[static_cast<std::size_t>(tray)];
-    std::vector<TriangleSoup> surfaces;
+    std::vector<Mesh> surfaces;
     Box3 box;
     for (const PlacedPart& part : packing.parts) {
       if (part.tray != tray) continue;
-      surfaces.push_back(to_soup(placed_mesh(problem, part)));
-      for (const Vec3& point : surfaces.back().points) box.extend(point);
+      surfaces.push_back(placed_mesh(problem, part));
+      for (const Vec3& point : surfaces.back().points()) box.extend(point);
       for (const int item : part.items)
         figures.material_mm3 += problem.items[static_cast<std::size_t>(item)].volume_mm3;
       ++figures.parts;

@@ -18,8 +18,8 @@ namespace {
 // The solid angle of all faces seen from p over 4π: 1 within the matter, 0 outside of it.
 double winding(const Mesh& mesh, const Vec3& p) {
   double sum = 0;
-  for (const auto face : mesh.faces()) {
-    const auto corner = corners(mesh, face);
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto corner = mesh.corners(i);
     const Vec3 a = corner[0] - p;
     const Vec3 b = corner[1] - p;
     const Vec3 c = corner[2] - p;
@@ -35,19 +35,20 @@ double winding(const Mesh& mesh, const Vec3& p) {
 // Surfaces that do not meet are one in the other or apart; each piece of a surface must be asked,
 // and any of its points will do.
 bool lies_within(const Mesh& inner, const Mesh& outer) {
-  std::vector<bool> seen(inner.n_vertices(), false);
-  std::vector<Mesh::VertexHandle> open;
-  for (const auto start : inner.vertices()) {
-    if (seen[static_cast<std::size_t>(start.idx())]) continue;
-    if (winding(outer, inner.point(start)) > 0.5) return true;
+  std::vector<bool> seen(inner.n_triangles(), false);
+  std::vector<std::size_t> open;
+  for (std::size_t start = 0; start < seen.size(); ++start) {
+    if (seen[start]) continue;
+    if (winding(outer, inner.corners(start).front()) > 0.5) return true;
     open.assign(1, start);
-    seen[static_cast<std::size_t>(start.idx())] = true;
+    seen[start] = true;
     while (!open.empty()) {
-      const Mesh::VertexHandle vertex = open.back();
+      const std::size_t triangle = open.back();
       open.pop_back();
-      for (const auto next : inner.vv_range(vertex)) {
-        if (seen[static_cast<std::size_t>(next.idx())]) continue;
-        seen[static_cast<std::size_t>(next.idx())] = true;
+      for (const int beside : inner.neighbours()[triangle]) {
+        const auto next = static_cast<std::size_t>(beside);
+        if (seen[next]) continue;
+        seen[next] = true;
         open.push_back(next);
       }
     }
@@ -61,24 +62,22 @@ struct MovableSurface::Tree {
   fcl::BVHModel<fcl::OBBRSSd> triangles;
 };
 
-MovableSurface::MovableSurface(const Mesh& mesh) {
-  TriangleSoup soup = to_soup(mesh);
+MovableSurface::MovableSurface(const Mesh& mesh) : mesh_(mesh) {
   std::vector<fcl::Triangle> triangles;
-  triangles.reserve(soup.triangles.size());
-  for (const auto& [a, b, c] : soup.triangles)
+  triangles.reserve(mesh.n_triangles());
+  for (const auto& [a, b, c] : mesh.triangles())
     triangles.emplace_back(static_cast<std::size_t>(a), static_cast<std::size_t>(b),
                            static_cast<std::size_t>(c));
   auto tree = std::make_shared<Tree>();
   tree->triangles.beginModel();
-  tree->triangles.addSubModel(soup.points, triangles);
+  tree->triangles.addSubModel(mesh.points(), triangles);
   tree->triangles.endModel();
   tree_ = std::move(tree);
-  points_ = std::move(soup.points);
 }
 
 Box3 MovableSurface::box(const Pose& at) const {
   Box3 box;
-  for (const Vec3& point : points_) box.extend(at * point);
+  for (const Vec3& point : mesh_.points()) box.extend(at * point);
   return box;
 }
 

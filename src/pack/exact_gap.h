@@ -30,7 +30,7 @@ class MovableSurface {
  private:
   struct Tree;
 
-  std::vector<Vec3> points_;
+  Mesh mesh_;
   std::shared_ptr<const Tree> tree_;
 };
 

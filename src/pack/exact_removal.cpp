@@ -28,8 +28,8 @@ double turn(const Facet& facet) {
 class Facing {
  public:
   Facing(const Mesh& mesh, bool up) {
-    for (const auto face : mesh.faces()) {
-      Facet facet = corners(mesh, face);
+    for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+      Facet facet = mesh.corners(i);
       const double twice_area = turn(facet);
       if (up ? twice_area <= 0 : twice_area >= 0) continue;
       if (!up) std::swap(facet[1], facet[2]);

@@ -53,13 +53,15 @@ EnvelopeSupport envelope_support(const DepthMaps& maps, double volume_mm3, doubl
   return {below * cell, std::max(0.0, between * cell - volume_mm3)};
 }
 
-TriangleSoup turned(TriangleSoup surface, const Mat3& rotation) {
-  for (Vec3& point : surface.points) point = rotation * point;
-  return surface;
+Mesh turned(const Mesh& surface, const Mat3& rotation) {
+  std::vector<Vec3> points;
+  points.reserve(surface.n_points());
+  for (const Vec3& point : surface.points()) points.push_back(rotation * point);
+  return surface.with_points(std::move(points));
 }
 
-std::vector<TriangleSoup> turned(std::vector<TriangleSoup> surfaces, const Mat3& rotation) {
-  for (TriangleSoup& surface : surfaces) surface = turned(std::move(surface), rotation);
+std::vector<Mesh> turned(std::vector<Mesh> surfaces, const Mat3& rotation) {
+  for (Mesh& surface : surfaces) surface = turned(surface, rotation);
   return surfaces;
 }
 
@@ -80,14 +82,15 @@ PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function
 
   std::map<std::vector<double>, int> known;
   for (std::size_t i = 0; i < problem.items.size(); ++i) {
-    Shape shape{to_soup(problem.items[i].surface), 0};
     const Vec3& centre = centres_[static_cast<std::size_t>(problem.items[i].model)];
     std::vector<double> look{centre.x(), centre.y(), centre.z()};
-    for (Vec3& point : shape.surface.points) {
+    std::vector<Vec3> points = problem.items[i].surface.points();
+    for (Vec3& point : points) {
       point -= centre;
       look.insert(look.end(), {point.x(), point.y(), point.z()});
     }
-    for (const auto& [a, b, c] : shape.surface.triangles)
+    Shape shape{problem.items[i].surface.with_points(std::move(points)), 0};
+    for (const auto& [a, b, c] : shape.surface.triangles())
       look.insert(look.end(),
                   {static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)});
     shape.twin = known.emplace(std::move(look), static_cast<int>(i)).first->second;
@@ -95,8 +98,8 @@ PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function
   }
 }
 
-std::vector<TriangleSoup> PartMaker::surfaces(const ItemSet& items) const {
-  std::vector<TriangleSoup> result;
+std::vector<Mesh> PartMaker::surfaces(const ItemSet& items) const {
+  std::vector<Mesh> result;
   for (const int item : items) result.push_back(shapes_[static_cast<std::size_t>(item)].surface);
   return result;
 }
@@ -108,7 +111,7 @@ std::shared_ptr<const DepthMaps> PartMaker::maps(int twin, const Mat3& rotation)
     const auto found = maps_.find(key);
     if (found != maps_.end()) return found->second;
   }
-  const TriangleSoup surface = turned(shapes_[static_cast<std::size_t>(twin)].surface, rotation);
+  const Mesh surface = turned(shapes_[static_cast<std::size_t>(twin)].surface, rotation);
   auto drawn = std::make_shared<const DepthMaps>(
       grid_.bounds ? draw_depth_maps(surface, grid_.cell_mm, problem_.support_angle)
                    : draw_sampled_maps(surface, grid_.cell_mm, problem_.support_angle));
@@ -159,11 +162,11 @@ ItemSet PartMaker::twins(const ItemSet& items) const {
 }
 
 std::vector<WayUp> PartMaker::ways_of(const Part& part) {
-  const std::vector<TriangleSoup> shapes = surfaces(part.items);
+  const std::vector<Mesh> shapes = surfaces(part.items);
   std::vector<WayUp> ways;
   const auto add = [&](const Mat3& base) {
     tick_();
-    const std::vector<TriangleSoup> standing = turned(shapes, base);
+    const std::vector<Mesh> standing = turned(shapes, base);
     const auto turn = best_turn(standing, rotation_set_.turns, problem_);
     if (turn) ways.push_back(measured(part, standing, base, *turn));
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
@@ -212,13 +215,13 @@ void PartMaker::add_own_ways(const Part& part, const std::vector<WayUp>& ways,
   }
 }
 
-WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& standing,
-                          const Mat3& base, const Turn& turn) const {
+WayUp PartMaker::measured(const Part& part, const std::vector<Mesh>& standing, const Mat3& base,
+                          const Turn& turn) const {
   WayUp way{base, turn.turn, 0, 0, 0, turn.size_mm};
   if (problem_.support_angle <= 0) {
     std::vector<DepthMaps> members;
     std::vector<const DepthMaps*> all;
-    for (const TriangleSoup& surface : standing)
+    for (const Mesh& surface : standing)
       members.push_back(draw_centre_maps(surface, grid_.cell_mm, 0));
     for (const DepthMaps& member : members) all.push_back(&member);
     const EnvelopeSupport support =
@@ -227,8 +230,8 @@ WayUp PartMaker::measured(const Part& part, const std::vector<TriangleSoup>& sta
     way.inside_support_mm3 = support.inside_mm3;
   } else {
     Box3 box;
-    for (const TriangleSoup& surface : standing)
-      for (const Vec3& point : surface.points) box.extend(point);
+    for (const Mesh& surface : standing)
+      for (const Vec3& point : surface.points()) box.extend(point);
     const double step = std::max(grid_.cell_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
     const ColumnSupport support =
         column_support(standing, step, problem_.support_angle, box.min().z());

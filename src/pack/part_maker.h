@@ -50,7 +50,7 @@ class PartMaker {
 
  private:
   struct Shape {  // of an item, about its model's centre
-    TriangleSoup surface;
+    Mesh surface;
     int twin = 0;  // the first item with the same shape about the same centre
   };
 
@@ -65,9 +65,9 @@ class PartMaker {
   std::vector<WayUp> ways_of(const Part& part);
   void add_own_ways(const Part& part, const std::vector<WayUp>& ways,
                     const std::function<double(const Mat3&)>& add);
-  WayUp measured(const Part& part, const std::vector<TriangleSoup>& standing, const Mat3& base,
+  WayUp measured(const Part& part, const std::vector<Mesh>& standing, const Mat3& base,
                  const Turn& turn) const;
-  std::vector<TriangleSoup> surfaces(const ItemSet& items) const;
+  std::vector<Mesh> surfaces(const ItemSet& items) const;
 
   const PackProblem& problem_;
   Grid grid_;

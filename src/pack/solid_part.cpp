@@ -83,13 +83,13 @@ void add_extents(const Piece& facet, std::vector<Extent>& extents) {
   }
 }
 
-std::vector<Extent> sorted_extents(const std::vector<TriangleSoup>& surfaces, double cell_mm) {
+std::vector<Extent> sorted_extents(const std::vector<Mesh>& surfaces, double cell_mm) {
   std::vector<Extent> extents;
-  for (const TriangleSoup& surface : surfaces)
-    for (const auto& triangle : surface.triangles) {
+  for (const Mesh& surface : surfaces)
+    for (const auto& triangle : surface.triangles()) {
       Piece facet;
       for (const int index : triangle) {
-        const Vec3& point = surface.points[static_cast<std::size_t>(index)];
+        const Vec3& point = surface.points()[static_cast<std::size_t>(index)];
         facet.add(Vec3(point.x() / cell_mm, point.y() / cell_mm, point.z()));
       }
       add_extents(facet, extents);
@@ -257,10 +257,10 @@ std::vector<SpanCell> grown(const std::vector<SpanCell>& cells, const SolidGrid&
   return result;
 }
 
-SolidPart solid_part(const std::vector<TriangleSoup>& surfaces, const SolidGrid& grid) {
+SolidPart solid_part(const std::vector<Mesh>& surfaces, const SolidGrid& grid) {
   SolidPart part;
-  for (const TriangleSoup& surface : surfaces)
-    for (const Vec3& point : surface.points) part.box.extend(point);
+  for (const Mesh& surface : surfaces)
+    for (const Vec3& point : surface.points()) part.box.extend(point);
   part.rise = static_cast<Height>(std::ceil(part.box.max().z() / grid.unit_mm - kRounding_units));
   const std::vector<Crossing> crossings =
       sorted_crossings(surfaces, grid.cell_mm, grid.support_angle);

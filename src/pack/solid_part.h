@@ -59,7 +59,7 @@ struct SolidPart {
 
 // surfaces: closed, normals outward, mm, in the frame of the position (0, 0, 0), the lowest point
 // at z >= 0. They may touch one another along facets, as the segments of one part do.
-SolidPart solid_part(const std::vector<TriangleSoup>& surfaces, const SolidGrid& grid);
+SolidPart solid_part(const std::vector<Mesh>& surfaces, const SolidGrid& grid);
 
 // The spans of `cells` grown by a ball of the given radius.
 std::vector<SpanCell> grown(const std::vector<SpanCell>& cells, const SolidGrid& grid,

@@ -10,10 +10,10 @@ namespace {
 constexpr double kTolerance = 1e-7;  // of a cell, and of a unit
 constexpr std::size_t kMostSpans = 12'000'000;
 
-Box3 box_of(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation) {
+Box3 box_of(const std::vector<Mesh>& surfaces, const Mat3& rotation) {
   Box3 box;
-  for (const TriangleSoup& surface : surfaces)
-    for (const Vec3& point : surface.points) box.extend(Vec3(rotation * point));
+  for (const Mesh& surface : surfaces)
+    for (const Vec3& point : surface.points()) box.extend(Vec3(rotation * point));
   return box;
 }
 
@@ -27,7 +27,7 @@ SolidMaker::SolidMaker(const PackProblem& problem, const std::vector<std::vector
   for (const std::vector<int>& items : parts) {
     shapes_.emplace_back();
     for (const int item : items)
-      shapes_.back().push_back(to_soup(problem.items[static_cast<std::size_t>(item)].surface));
+      shapes_.back().push_back(problem.items[static_cast<std::size_t>(item)].surface);
   }
 }
 
@@ -86,9 +86,12 @@ std::shared_ptr<const SolidPart> SolidMaker::drawn(int part,
     const auto known = drawings_.find(key);
     if (known != drawings_.end()) return known->second.part;
   }
-  std::vector<TriangleSoup> turned = shapes_[static_cast<std::size_t>(part)];
-  for (TriangleSoup& surface : turned)
-    for (Vec3& point : surface.points) point = attitude->rotation * point + attitude->shift + moved;
+  std::vector<Mesh> turned = shapes_[static_cast<std::size_t>(part)];
+  for (Mesh& surface : turned) {
+    std::vector<Vec3> points = surface.points();
+    for (Vec3& point : points) point = attitude->rotation * point + attitude->shift + moved;
+    surface = surface.with_points(std::move(points));
+  }
   auto made = std::make_shared<const SolidPart>(solid_part(turned, grid));
   const std::lock_guard lock(mutex_);
   spans_ += made->matter.size() + made->reach.size() + made->centres.size();

@@ -60,8 +60,8 @@ class SolidMaker {
   const SolidGrid& coarse_;
   const SolidGrid& fine_;
   int ratio_;
-  std::vector<std::vector<TriangleSoup>> shapes_;  // by part, model coordinates
-  std::mutex mutex_;                               // guards the caches
+  std::vector<std::vector<Mesh>> shapes_;  // by part, model coordinates
+  std::mutex mutex_;                       // guards the caches
   std::map<std::pair<int, std::array<std::int64_t, 9>>, std::shared_ptr<const Attitude>> attitudes_;
   struct Drawing {
     std::shared_ptr<const Attitude> attitude;  // kept alive: it is the key

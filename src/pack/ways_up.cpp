@@ -19,10 +19,10 @@ constexpr int kFitSamples = 3000;
 constexpr int kFitRefinements = 400;
 
 // Sizes after turns about z, without copying the surfaces.
-Vec3 size_turned(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation) {
+Vec3 size_turned(const std::vector<Mesh>& surfaces, const Mat3& rotation) {
   Box3 box;
-  for (const TriangleSoup& surface : surfaces)
-    for (const Vec3& point : surface.points) box.extend(rotation * point);
+  for (const Mesh& surface : surfaces)
+    for (const Vec3& point : surface.points()) box.extend(rotation * point);
   return box.sizes();
 }
 
@@ -52,17 +52,16 @@ bool fits(const Vec3& size_mm, const Vec3& build_mm) {
   return excess(size_mm, build_mm) <= kFitTolerance_mm;
 }
 
-std::optional<Turn> best_turn(const std::vector<TriangleSoup>& standing,
-                              const std::vector<double>& turns, const PackProblem& problem) {
+std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vector<double>& turns,
+                              const PackProblem& problem) {
   Box3 box;
   Eigen::Index count = 0;
-  for (const TriangleSoup& surface : standing)
-    count += static_cast<Eigen::Index>(surface.points.size());
+  for (const Mesh& surface : standing) count += static_cast<Eigen::Index>(surface.points().size());
   Eigen::ArrayXd xs(count);
   Eigen::ArrayXd ys(count);
   Eigen::Index next = 0;
-  for (const TriangleSoup& surface : standing)
-    for (const Vec3& point : surface.points) {
+  for (const Mesh& surface : standing)
+    for (const Vec3& point : surface.points()) {
       box.extend(point);
       xs[next] = point.x();
       ys[next++] = point.y();
@@ -88,7 +87,7 @@ std::optional<Turn> best_turn(const std::vector<TriangleSoup>& standing,
   return best;
 }
 
-std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surfaces,
+std::optional<FittingWay> way_up_that_fits(const std::vector<Mesh>& surfaces,
                                            const PackProblem& problem) {
   Random random(0);  // of no consequence for the packing's own seed
   Mat3 best = Mat3::Identity();
@@ -106,16 +105,16 @@ std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surf
   return FittingWay{best, size_turned(surfaces, best)};
 }
 
-std::vector<Vec3> flat_facets(const std::vector<TriangleSoup>& surfaces) {
+std::vector<Vec3> flat_facets(const std::vector<Mesh>& surfaces) {
   // Areas summed by direction, on a lattice fine enough that facets of one plane share a bin or lie
   // in neighbouring ones.
   std::map<std::array<long, 3>, Vec3> bins;  // area-weighted normals
   double total = 0;
-  for (const TriangleSoup& surface : surfaces)
-    for (const auto& [a, b, c] : surface.triangles) {
-      const Vec3& p = surface.points[static_cast<std::size_t>(a)];
-      const Vec3 area = (surface.points[static_cast<std::size_t>(b)] - p)
-                            .cross(surface.points[static_cast<std::size_t>(c)] - p) /
+  for (const Mesh& surface : surfaces)
+    for (const auto& [a, b, c] : surface.triangles()) {
+      const Vec3& p = surface.points()[static_cast<std::size_t>(a)];
+      const Vec3 area = (surface.points()[static_cast<std::size_t>(b)] - p)
+                            .cross(surface.points()[static_cast<std::size_t>(c)] - p) /
                         2;
       if (!(area.norm() > 0)) continue;
       const Vec3 normal = area.normalized();
@@ -133,7 +132,7 @@ std::vector<Vec3> flat_facets(const std::vector<TriangleSoup>& surfaces) {
   return flats;
 }
 
-std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces, std::size_t most) {
+std::vector<Mat3> ways_on_flat_facets(const std::vector<Mesh>& surfaces, std::size_t most) {
   const std::vector<Vec3> flats = flat_facets(surfaces);
   std::vector<Mat3> ways;
   for (std::size_t i = 0; i < std::min(most, flats.size()); ++i)

@@ -26,8 +26,8 @@ struct Turn {
 
 // The turn about the vertical in which the surfaces together, standing as they are given, fit the
 // build volume at the least cost of their box; of equal ones the first. Empty where none fits.
-std::optional<Turn> best_turn(const std::vector<TriangleSoup>& standing,
-                              const std::vector<double>& turns, const PackProblem& problem);
+std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vector<double>& turns,
+                              const PackProblem& problem);
 
 struct FittingWay {
   Mat3 rotation = Mat3::Identity();
@@ -36,16 +36,16 @@ struct FittingWay {
 
 // A rotation found by sampling and refining in which the surfaces fit the build volume although no
 // rotation of the set did; empty where none was found.
-std::optional<FittingWay> way_up_that_fits(const std::vector<TriangleSoup>& surfaces,
+std::optional<FittingWay> way_up_that_fits(const std::vector<Mesh>& surfaces,
                                            const PackProblem& problem);
 
 // Large flat facets, as cuts by a plane leave them: normals as long as their area, mm², the largest
 // first.
-std::vector<Vec3> flat_facets(const std::vector<TriangleSoup>& surfaces);
+std::vector<Vec3> flat_facets(const std::vector<Mesh>& surfaces);
 
 // Ways up in which the surfaces stand on a large flat facet of theirs; the largest first, at most
 // `most`.
-std::vector<Mat3> ways_on_flat_facets(const std::vector<TriangleSoup>& surfaces, std::size_t most);
+std::vector<Mat3> ways_on_flat_facets(const std::vector<Mesh>& surfaces, std::size_t most);
 
 // Whether a box fits the build volume, to within rounding.
 bool fits(const Vec3& size_mm, const Vec3& build_mm);

@@ -2,13 +2,15 @@
 
 #include <cmath>
 
+#include "model/half_edges.h"
+
 namespace packmerger {
 namespace {
 
 const double kSharpCosine = std::cos(radians(40));
 
-Vec3 area_normal(const Mesh& mesh, Mesh::FaceHandle face) {
-  const auto [a, b, c] = corners(mesh, face);
+Vec3 area_normal(const Mesh& mesh, std::size_t triangle) {
+  const auto [a, b, c] = mesh.corners(triangle);
   return (b - a).cross(c - a);
 }
 
@@ -25,12 +27,13 @@ Vec3 corner_normal(const std::vector<Vec3>& around, const Vec3& own) {
 }  // namespace
 
 SplitSurface split_at_sharp_edges(const Mesh& mesh) {
-  std::vector<Vec3> face_normals(mesh.n_faces());
-  for (const auto face : mesh.faces()) face_normals[face.idx()] = area_normal(mesh, face);
+  std::vector<Vec3> face_normals(mesh.n_triangles());
+  for (std::size_t i = 0; i < face_normals.size(); ++i) face_normals[i] = area_normal(mesh, i);
 
   SplitSurface result;
-  result.triangles.resize(mesh.n_faces());
-  for (const auto vertex : mesh.vertices()) {
+  result.triangles.resize(mesh.n_triangles());
+  const HalfEdges edges = half_edges(mesh);
+  for (const auto vertex : edges.vertices()) {
     std::vector<Vec3> around;
     for (const auto face : vertex.faces()) around.push_back(face_normals[face.idx()]);
     const std::size_t first = result.points.size();
@@ -39,15 +42,12 @@ SplitSurface split_at_sharp_edges(const Mesh& mesh) {
       std::size_t point = first;
       while (point < result.points.size() && result.normals[point].dot(normal) < 1 - 1e-6) ++point;
       if (point == result.points.size()) {
-        result.points.push_back(mesh.point(vertex));
+        result.points.push_back(mesh.points()[vertex.idx()]);
         result.normals.push_back(normal);
       }
-      int corner = 0;
-      for (const auto other : mesh.fv_ccw_range(face)) {
-        if (other == vertex)
-          result.triangles[face.idx()][corner] = static_cast<std::uint32_t>(point);
-        ++corner;
-      }
+      for (std::size_t k = 0; k < 3; ++k)
+        if (mesh.triangles()[face.idx()][k] == vertex.idx())
+          result.triangles[face.idx()][k] = static_cast<std::uint32_t>(point);
     }
   }
   return result;

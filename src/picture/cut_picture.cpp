@@ -1,6 +1,6 @@
 #include <algorithm>
+#include <array>
 #include <map>
-#include <memory>
 #include <numeric>
 
 #include "picture/part_colour.h"
@@ -16,7 +16,7 @@ constexpr Colour kCut{0.12F, 0.13F, 0.16F};
 const Vec3 kView(0.35, 1, -0.3);
 
 // Corners of faces that share an edge inside one segment share a vertex; all others get their own,
-// so that every segment is a surface OpenMesh can hold, however it touches itself.
+// so that every segment is a 2-manifold, however it touches itself.
 class CornerClasses {
  public:
   explicit CornerClasses(std::size_t corners) : parent_(corners) {
@@ -32,64 +32,77 @@ class CornerClasses {
   std::vector<int> parent_;
 };
 
-int corner_of(const Mesh& mesh, Mesh::FaceHandle face, Mesh::VertexHandle vertex) {
-  int corner = face.idx() * 3;
-  for (const auto other : mesh.fv_ccw_range(face)) {
-    if (other == vertex) break;
-    ++corner;
-  }
-  return corner;
+// Calls visit(face, k, other) for each edge once: it goes from corner k of the face to the next,
+// and the other face is across it.
+template <typename Visit>
+void for_each_edge(const Mesh& mesh, const Visit& visit) {
+  for (int face = 0; face < static_cast<int>(mesh.n_triangles()); ++face)
+    for (int k = 0; k < 3; ++k)
+      if (mesh.neighbours()[face][k] > face) visit(face, k, mesh.neighbours()[face][k]);
+}
+
+// The number of a point's corner among those of all faces.
+int corner_of(const Mesh& mesh, int face, int point) {
+  const auto& corners = mesh.triangles()[face];
+  const auto at = std::find(corners.begin(), corners.end(), point);
+  return 3 * face + static_cast<int>(at - corners.begin());
 }
 
 CornerClasses joined_corners(const ColouredMesh& coloured) {
   const Mesh& mesh = coloured.surface;
-  CornerClasses classes(mesh.n_faces() * 3);
-  for (const auto edge : mesh.edges()) {
-    const auto a = edge.h0().face();
-    const auto b = edge.h1().face();
-    if (!a.is_valid() || !b.is_valid()) continue;
-    if (coloured.segment_of_face[a.idx()] != coloured.segment_of_face[b.idx()]) continue;
-    for (const auto vertex : {edge.v0(), edge.v1()})
-      classes.unite(corner_of(mesh, a, vertex), corner_of(mesh, b, vertex));
-  }
+  CornerClasses classes(mesh.n_triangles() * 3);
+  for_each_edge(mesh, [&](int face, int k, int other) {
+    if (coloured.segment_of_face[face] != coloured.segment_of_face[other]) return;
+    for (const int end : {k, (k + 1) % 3})
+      classes.unite(3 * face + end, corner_of(mesh, other, mesh.triangles()[face][end]));
+  });
   return classes;
 }
 
 std::map<int, Mesh> segment_meshes(const ColouredMesh& coloured) {
   const Mesh& mesh = coloured.surface;
   CornerClasses classes = joined_corners(coloured);
-  std::map<int, Mesh> segments;
-  std::map<int, Mesh::VertexHandle> vertex_of_class;
-  for (const auto face : mesh.faces()) {
-    Mesh& segment = segments[coloured.segment_of_face[face.idx()]];
-    std::vector<Mesh::VertexHandle> triangle;
-    int corner = face.idx() * 3;
-    for (const auto vertex : face.vertices_ccw()) {
-      const auto [entry, added] =
-          vertex_of_class.try_emplace(classes.find(corner++), Mesh::VertexHandle());
-      if (added) entry->second = segment.add_vertex(mesh.point(vertex));
-      triangle.push_back(entry->second);
+  std::map<int, TriangleSoup> soups;
+  std::map<int, int> point_of_class;
+  for (int face = 0; face < static_cast<int>(mesh.n_triangles()); ++face) {
+    TriangleSoup& soup = soups[coloured.segment_of_face[face]];
+    std::array<int, 3> triangle{};
+    for (int k = 0; k < 3; ++k) {
+      const auto [entry, added] = point_of_class.try_emplace(classes.find(3 * face + k),
+                                                             static_cast<int>(soup.points.size()));
+      if (added) soup.points.push_back(mesh.points()[mesh.triangles()[face][k]]);
+      triangle[k] = entry->second;
     }
-    segment.add_face(triangle);
+    soup.triangles.push_back(triangle);
   }
+  std::map<int, Mesh> segments;
+  for (auto& [segment, soup] : soups) segments[segment] = manifold_mesh(std::move(soup));
   return segments;
 }
 
-void add_cuts(Scene& scene, const ColouredMesh& coloured, const Pose& pose, double lift_mm) {
-  Mesh mesh = transformed(coloured.surface, pose);
-  mesh.request_face_normals();
-  mesh.request_vertex_normals();
-  mesh.update_normals();
-  const auto lifted = [&](Mesh::VertexHandle vertex) -> Vec3 {
-    return mesh.point(vertex) + lift_mm * mesh.normal(vertex);
-  };
-  for (const auto edge : mesh.edges()) {
-    const auto a = edge.h0().face();
-    const auto b = edge.h1().face();
-    if (!a.is_valid() || !b.is_valid()) continue;
-    if (coloured.segment_of_face[a.idx()] == coloured.segment_of_face[b.idx()]) continue;
-    scene.lines.push_back({lifted(edge.v0()), lifted(edge.v1()), kCut});
+// The mean of the normals of the faces round each point, unit length.
+std::vector<Vec3> point_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.n_points(), Vec3::Zero());
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto [a, b, c] = mesh.corners(i);
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    for (const int corner : mesh.triangles()[i]) normals[corner] += normal;
   }
+  for (Vec3& normal : normals) normal.normalize();
+  return normals;
+}
+
+void add_cuts(Scene& scene, const ColouredMesh& coloured, const Pose& pose, double lift_mm) {
+  const Mesh mesh = transformed(coloured.surface, pose);
+  const std::vector<Vec3> normals = point_normals(mesh);
+  const auto lifted = [&](int point) -> Vec3 {
+    return mesh.points()[point] + lift_mm * normals[point];
+  };
+  for_each_edge(mesh, [&](int face, int k, int other) {
+    if (coloured.segment_of_face[face] == coloured.segment_of_face[other]) return;
+    const auto& corners = mesh.triangles()[face];
+    scene.lines.push_back({lifted(corners[k]), lifted(corners[(k + 1) % 3]), kCut});
+  });
 }
 
 }  // namespace
@@ -100,14 +113,11 @@ Image cut_picture(const ColouredMesh& before, const ColouredMesh& after) {
   const double width = box.sizes().dot(right.cwiseAbs());
   Scene scene;
   scene.line_width_px = 2;
-  std::vector<std::unique_ptr<Mesh>> owned;
   std::vector<Box3> all;
   Pose pose = Pose::Identity();
   for (const ColouredMesh* coloured : {&before, &after}) {
-    for (auto& [segment, mesh] : segment_meshes(*coloured)) {
-      owned.push_back(std::make_unique<Mesh>(std::move(mesh)));
-      scene.meshes.push_back({owned.back().get(), part_colour(segment), pose});
-    }
+    for (const auto& [segment, mesh] : segment_meshes(*coloured))
+      scene.meshes.push_back({mesh, part_colour(segment), pose});
     add_cuts(scene, *coloured, pose, 2e-3 * width);
     all.push_back(box.translated(Vec3(pose.translation())));
     pose.translation() += 1.1 * width * right;

@@ -182,13 +182,13 @@ std::string page_glb(const std::vector<PagePart>& parts) {
   model.extensionsUsed = {"KHR_mesh_quantization"};
   model.extensionsRequired = model.extensionsUsed;
   double triangles = 0;
-  for (const PagePart& part : parts) triangles += static_cast<double>(part.surface->n_faces());
+  for (const PagePart& part : parts) triangles += static_cast<double>(part.surface->n_triangles());
   tinygltf::Scene trays;
   trays.name = "trays";
   tinygltf::Scene models;
   models.name = "models";
   for (const PagePart& part : parts) {
-    const double share = static_cast<double>(part.surface->n_faces()) / triangles;
+    const double share = static_cast<double>(part.surface->n_triangles()) / triangles;
     const Quantised mesh = add_mesh(model, part, share);
     trays.nodes.push_back(add_node(model, part.id, mesh, part.on_tray, part.aside_on_tray_mm));
     models.nodes.push_back(

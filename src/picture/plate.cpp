@@ -29,21 +29,16 @@ TriangleSoup slab(const Box3& box) {
   return soup;
 }
 
-void add_owned(OwnedScene& scene, Mesh mesh, const Colour& colour) {
-  scene.meshes.push_back(std::make_unique<Mesh>(std::move(mesh)));
-  scene.scene.meshes.push_back({scene.meshes.back().get(), colour, Pose::Identity()});
-}
-
 double size_of(const Box3& box) { return std::max(box.sizes().x(), box.sizes().y()); }
 
 }  // namespace
 
-void add_plate(OwnedScene& scene, const Box3& box) {
+void add_plate(Scene& scene, const Box3& box) {
   const double size = size_of(box);
   Box3 plate(box.min(), box.max());
   plate.max().z() = kPlateTop * size;
   plate.min().z() = plate.max().z() - 0.012 * size;
-  add_owned(scene, closed_mesh(slab(plate)), kPlate);
+  scene.meshes.push_back({closed_mesh(slab(plate)), kPlate});
 
   const double step = size < 50 ? 1 : 10;
   const double z = kLineTop * size;
@@ -55,32 +50,32 @@ void add_plate(OwnedScene& scene, const Box3& box) {
       Vec3 b = a;
       a[axis] = b[axis] = box.min()[axis] + i * step;
       b[across] = box.max()[across];
-      scene.scene.lines.push_back({a, b, i % 5 == 0 ? kStrongLine : kFineLine});
+      scene.lines.push_back({a, b, i % 5 == 0 ? kStrongLine : kFineLine});
     }
   }
 }
 
-void add_volume(OwnedScene& scene, const Box3& box) {
+void add_volume(Scene& scene, const Box3& box) {
   for (int from = 0; from < 8; ++from)
     for (const int axis : {1, 2, 4})
       if ((from & axis) == 0)
-        scene.scene.lines.push_back({box.corner(static_cast<Box3::CornerType>(from)),
-                                     box.corner(static_cast<Box3::CornerType>(from | axis)),
-                                     kVolumeLine});
+        scene.lines.push_back({box.corner(static_cast<Box3::CornerType>(from)),
+                               box.corner(static_cast<Box3::CornerType>(from | axis)),
+                               kVolumeLine});
 }
 
-void add_standing(OwnedScene& scene, const Mesh& mesh, const Pose& pose, const Colour& colour,
+void add_standing(Scene& scene, const Mesh& mesh, const Pose& pose, const Colour& colour,
                   const Box3& plate) {
-  scene.scene.meshes.push_back({&mesh, colour, pose});
-  Mesh shadow = transformed(mesh, pose);
-  for (const auto vertex : shadow.vertices()) {
-    Vec3 point = shadow.point(vertex);
+  scene.meshes.push_back({mesh, colour, pose});
+  std::vector<Vec3> shadow;
+  for (const Vec3& standing : mesh.points()) {
+    Vec3 point = pose * standing;
     point -= kLight * (point.z() / kLight.z());
     for (int i : {0, 1}) point[i] = std::clamp(point[i], plate.min()[i], plate.max()[i]);
     point.z() = kShadowTop * size_of(plate);
-    shadow.set_point(vertex, point);
+    shadow.push_back(point);
   }
-  add_owned(scene, std::move(shadow), kShadow);
+  scene.meshes.push_back({mesh.with_points(std::move(shadow)), kShadow});
 }
 
 Camera distant_camera(const std::vector<Box3>& boxes, const Vec3& direction, int width,

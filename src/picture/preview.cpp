@@ -15,7 +15,7 @@ const Vec3 kView(0.22, 1, -0.62);  // from the front left, from above
 
 // The models as their files stand, one beside the other, on a plate of their own that ends at
 // x = right_mm. Returns what they cover.
-Box3 add_models(OwnedScene& scene, const Job& job, double right_mm) {
+Box3 add_models(Scene& scene, const Job& job, double right_mm) {
   constexpr double kMarginMm = 10;
   std::vector<Box3> boxes;
   double width = kMarginMm;
@@ -55,7 +55,7 @@ int count_trays(const Job& job) {
 Image preview_picture(const Job& job) {
   const Vec3 build = job.profile.build();
   const double apart = 0.12 * build.x();
-  OwnedScene scene;
+  Scene scene;
   std::vector<Box3> all;
   if (!job.models.empty()) all.push_back(add_models(scene, job, -apart));
   for (int tray = 1; tray <= count_trays(job); ++tray) {
@@ -69,7 +69,7 @@ Image preview_picture(const Job& job) {
         add_standing(scene, part.surface, aside * part.pose, part_colour(part.id - 1), volume);
     all.push_back(volume);
   }
-  return draw(scene.scene, distant_camera(all, kView, kWidth, kHeight), kWidth, kHeight);
+  return draw(scene, distant_camera(all, kView, kWidth, kHeight), kWidth, kHeight);
 }
 
 }  // namespace packmerger

@@ -54,7 +54,7 @@ void print_object(Out& out, const ThreeMfPart& part, std::size_t index) {
   for (const Eigen::Vector3f& point : points)
     print(out, "     <vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", point.x(), point.y(), point.z());
   print(out, "    </vertices>\n    <triangles>\n");
-  for (const auto& [a, b, c] : to_soup(*part.surface).triangles)
+  for (const auto& [a, b, c] : part.surface->triangles())
     print(out, "     <triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", a, b, c);
   print(out, "    </triangles>\n   </mesh>\n  </object>\n");
 }

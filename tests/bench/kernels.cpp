@@ -25,13 +25,13 @@ namespace {
 
 // A piece of a shell, 3 mm thick, in triangles of about 1.6 mm, in many rotations: the packer draws
 // each once, and a processor that is shown one of them again remembers what its branches did.
-const std::vector<TriangleSoup>& segments() {
-  static const std::vector<TriangleSoup> kSegments = [] {
+const std::vector<Mesh>& segments() {
+  static const std::vector<Mesh> kSegments = [] {
     Random random(7);
     const Mesh segment = shapes::sphere_patch(50, 3, 0, 50);
-    std::vector<TriangleSoup> turned;
+    std::vector<Mesh> turned;
     for (int i = 0; i < 20; ++i)
-      turned.push_back(to_soup(shapes::turned(segment, shapes::any_rotation(random))));
+      turned.push_back(shapes::turned(segment, shapes::any_rotation(random)));
     return turned;
   }();
   return kSegments;
@@ -40,12 +40,12 @@ const std::vector<TriangleSoup>& segments() {
 void count_triangles(benchmark::State& state) {
   state.SetItemsProcessed(
       state.iterations() *
-      static_cast<std::int64_t>(segments().size() * segments().front().triangles.size()));
+      static_cast<std::int64_t>(segments().size() * segments().front().n_triangles()));
 }
 
 void depth_maps(benchmark::State& state, double grid_mm) {
   for (auto step : state)
-    for (const TriangleSoup& segment : segments())
+    for (const Mesh& segment : segments())
       benchmark::DoNotOptimize(draw_depth_maps(segment, grid_mm, 0));
   count_triangles(state);
 }
@@ -57,7 +57,7 @@ void depth_maps_by_osmesa(benchmark::State& state, double grid_mm) {
     RayLattice rays;
   };
   std::vector<View> views;
-  for (const TriangleSoup& segment : segments()) {
+  for (const Mesh& segment : segments()) {
     const DepthMaps maps = draw_depth_maps(segment, grid_mm, 0);
     views.push_back({shapes::depth_triangles(segment),
                      {maps.x0 * grid_mm, maps.y0 * grid_mm, grid_mm / 2, 2 * maps.width + 1,

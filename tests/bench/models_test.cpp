@@ -29,9 +29,9 @@ void expect_model(const Mesh& mesh, const Vec3& size_mm, double tolerance_mm) {
 }
 
 int pieces_by_euler(const Mesh& mesh) {  // of surfaces without handles
-  return (static_cast<int>(mesh.n_vertices()) - static_cast<int>(mesh.n_edges()) +
-          static_cast<int>(mesh.n_faces())) /
-         2;
+  const auto faces = static_cast<int>(mesh.n_triangles());
+  const int edges = 3 * faces / 2;
+  return (static_cast<int>(mesh.n_points()) - edges + faces) / 2;
 }
 
 Estimate standing(const Mesh& mesh) {
@@ -75,10 +75,8 @@ TEST(FigureModels, ArchFitsTheUprintPlusInNoWay) {
   for (int degree = 0; degree <= 180; ++degree) {
     const double c = std::cos(radians(degree)), s = std::sin(radians(degree));
     Box3 box;
-    for (const auto vertex : arch.vertices()) {
-      const Vec3& p = arch.point(vertex);
+    for (const Vec3& p : arch.points())
       box.extend(Vec3(c * p.x() - s * p.z(), s * p.x() + c * p.z(), p.y()));
-    }
     EXPECT_GT(box.sizes().head<2>().maxCoeff(), tray.x()) << "lying, turned by " << degree;
     EXPECT_GT(box.sizes().y(), tray.z()) << "on edge, turned by " << degree;
   }
@@ -91,8 +89,7 @@ TEST(BallsAndSticks, DumbBell) {
       closed_mesh(balls_and_sticks({{Vec3::Zero(), kBall}, {far, kBall}}, {{0, 1}}, kStick, 1));
   EXPECT_EQ(pieces_by_euler(mesh), 1);
   EXPECT_FALSE(self_intersects(mesh));
-  for (const auto vertex : mesh.vertices()) {
-    const Vec3& p = mesh.point(vertex);
+  for (const Vec3& p : mesh.points()) {
     const double from_axis = p.cross(far.normalized()).norm();
     const double nearest = std::min({std::abs(p.norm() - kBall), std::abs((p - far).norm() - kBall),
                                      std::abs(from_axis - kStick)});

@@ -45,13 +45,10 @@ constexpr double kCoarse_mm = 1.5;
 constexpr double kFine_mm = 0.4;
 
 double support_cm3(const Mesh& surface, const Vec3& up, double support_angle, double step_mm) {
-  TriangleSoup standing = to_soup(surface);
-  const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()).toRotationMatrix();
-  double lowest = std::numeric_limits<double>::infinity();
-  for (Vec3& point : standing.points) {
-    point = turn * point;
-    lowest = std::min(lowest, point.z());
-  }
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()).toRotationMatrix();
+  const Mesh standing = transformed(surface, pose);
+  const double lowest = bounding_box(standing).min().z();
   const ColumnSupport support = column_support({standing}, step_mm, support_angle, lowest);
   return (support.below + support.inside) / 1000;
 }
@@ -59,7 +56,7 @@ double support_cm3(const Mesh& surface, const Vec3& up, double support_angle, do
 // A regular set over the sphere, and the flat faces of the part.
 std::vector<Vec3> directions_of(const Mesh& surface) {
   std::vector<Vec3> directions = spread_directions(kDirections);
-  for (const Vec3& area : flat_facets({to_soup(surface)})) {
+  for (const Vec3& area : flat_facets({surface})) {
     directions.push_back(area.normalized());
     directions.push_back(-area.normalized());
   }

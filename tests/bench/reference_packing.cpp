@@ -16,17 +16,17 @@ constexpr double kFinestUnit_mm = 1.0 / 64;
 constexpr double kMostUnits = 16000;  // of the build volume's height: sums of two stay in 16 bits
 constexpr Height kBare = -16384;      // the plate: no part needs a gap to it
 
-DepthTriangles triangles_of(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation,
+DepthTriangles triangles_of(const std::vector<Mesh>& surfaces, const Mat3& rotation,
                             double normal_limit) {
   DepthTriangles result;
-  for (const TriangleSoup& surface : surfaces) {
+  for (const Mesh& surface : surfaces) {
     const auto base = static_cast<std::uint32_t>(result.points.size());
     std::vector<Vec3> points;
-    for (const Vec3& point : surface.points) {
+    for (const Vec3& point : surface.points()) {
       points.push_back(rotation * point);
       result.points.push_back(points.back().cast<float>());
     }
-    for (const auto& [a, b, c] : surface.triangles) {
+    for (const auto& [a, b, c] : surface.triangles()) {
       const Vec3 normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
       if (!(normal.z() <= normal_limit)) continue;
       result.triangles.push_back({base + static_cast<std::uint32_t>(a),
@@ -80,9 +80,9 @@ Height ReferencePacker::units(double mm) const {
 }
 
 std::vector<ReferenceMaps> ReferencePacker::draw(const ItemSet& items) {
-  std::vector<TriangleSoup> surfaces;
+  std::vector<Mesh> surfaces;
   for (const int item : items)
-    surfaces.push_back(to_soup(problem_.items[static_cast<std::size_t>(item)].surface));
+    surfaces.push_back(problem_.items[static_cast<std::size_t>(item)].surface);
   std::vector<ReferenceMaps> all;
   for (const Mat3& rotation : rotations_) {
     ReferenceMaps maps = draw(surfaces, rotation);
@@ -91,13 +91,12 @@ std::vector<ReferenceMaps> ReferencePacker::draw(const ItemSet& items) {
   return all;
 }
 
-ReferenceMaps ReferencePacker::draw(const std::vector<TriangleSoup>& surfaces,
-                                    const Mat3& rotation) {
+ReferenceMaps ReferencePacker::draw(const std::vector<Mesh>& surfaces, const Mat3& rotation) {
   ReferenceMaps maps;
   maps.rotation = rotation;
   Box3 exact;
-  for (const TriangleSoup& surface : surfaces)
-    for (const Vec3& point : surface.points) exact.extend(Vec3(rotation * point));
+  for (const Mesh& surface : surfaces)
+    for (const Vec3& point : surface.points()) exact.extend(Vec3(rotation * point));
   const double grid = problem_.grid_mm;
   const Vec3 low = exact.min();
   // In whole units, as all heights, so that equal places have equal costs to the last bit.

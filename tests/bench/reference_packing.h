@@ -75,7 +75,7 @@ class ReferencePacker {
   struct Tray;
 
   Height units(double mm) const;
-  ReferenceMaps draw(const std::vector<TriangleSoup>& surfaces, const Mat3& rotation);
+  ReferenceMaps draw(const std::vector<Mesh>& surfaces, const Mat3& rotation);
   std::optional<ReferencePlacement> best(const Tray& tray, const std::vector<ReferenceMaps>& part,
                                          double volume_mm3);
   double waste_mm3(const ReferencePlacement& place) const;

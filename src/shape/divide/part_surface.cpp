@@ -46,7 +46,7 @@ SegmentSurface surface_of(const TetMesh& mesh, const std::vector<int>& labels,
     fail(label, "two points lie at one position");
   if (!(result.volume_mm3 > 0)) fail(label, "it has no volume");
   try {
-    result.surface = closed_mesh(soup);
+    result.surface = closed_mesh(std::move(soup));
   } catch (const Error& error) {
     fail(label, error.what());
   }

@@ -74,23 +74,6 @@ std::vector<int> representatives_near(const std::vector<Vec3>& points, double to
   return first;
 }
 
-// Keeps the points that are used, in order.
-TriangleSoup compacted(const std::vector<Vec3>& points, std::vector<Triangle> triangles) {
-  std::vector<int> number(points.size(), -1);
-  for (const Triangle& triangle : triangles)
-    for (const int corner : triangle) number[corner] = 0;
-  TriangleSoup result;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (number[i] == 0) {
-      number[i] = static_cast<int>(result.points.size());
-      result.points.push_back(points[i]);
-    }
-  for (Triangle& triangle : triangles)
-    for (int& corner : triangle) corner = number[corner];
-  result.triangles = std::move(triangles);
-  return result;
-}
-
 bool collapsed(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
 // Sorted corners, and whether an even permutation sorts them.
@@ -109,17 +92,13 @@ std::pair<Triangle, bool> sorted(Triangle t) {
 
 }  // namespace
 
-TriangleSoup welded(const TriangleSoup& soup, double tolerance_mm) {
+TriangleSoup welded(const TriangleView& surface, double tolerance_mm) {
+  TriangleSoup soup = to_soup(surface);
   const std::vector<int> first = tolerance_mm > 0 ? representatives_near(soup.points, tolerance_mm)
                                                   : representatives_exact(soup.points);
-  std::vector<Triangle> triangles = soup.triangles;
-  for (Triangle& triangle : triangles)
+  for (Triangle& triangle : soup.triangles)
     for (int& corner : triangle) corner = first[corner];
-  return compacted(soup.points, std::move(triangles));
-}
-
-TriangleSoup without_unused_points(const TriangleSoup& soup) {
-  return compacted(soup.points, soup.triangles);
+  return without_unused_points(std::move(soup));
 }
 
 int drop_collapsed(TriangleSoup& soup) {
@@ -173,7 +152,7 @@ int count_open_edges(const TriangleSoup& soup) {
       std::count_if(sides.begin(), sides.end(), [](const auto& edge) { return edge.second != 2; }));
 }
 
-std::vector<int> non_manifold_points(const TriangleSoup& soup) {
+std::vector<int> non_manifold_points(const TriangleView& soup) {
   std::vector<char> bad(soup.points.size(), 0);
   std::unordered_map<std::uint64_t, int> triangle_at;  // directed edge → its triangle
   triangle_at.reserve(soup.triangles.size() * 3);
@@ -213,9 +192,9 @@ std::vector<int> non_manifold_points(const TriangleSoup& soup) {
   return points;
 }
 
-bool is_closed_manifold(const TriangleSoup& soup) { return non_manifold_points(soup).empty(); }
+bool is_closed_manifold(const TriangleView& soup) { return non_manifold_points(soup).empty(); }
 
-Components components_of(const TriangleSoup& soup) {
+Components components_of(const TriangleView& soup) {
   std::vector<int> parent(soup.triangles.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i) {
@@ -243,7 +222,7 @@ Components components_of(const TriangleSoup& soup) {
   return components;
 }
 
-std::vector<TriangleSoup> split_components(const TriangleSoup& soup) {
+std::vector<TriangleSoup> split_components(const TriangleView& soup) {
   const Components components = components_of(soup);
   std::vector<TriangleSoup> parts(components.count);
   std::vector<std::unordered_map<int, int>> numbers(components.count);

@@ -10,10 +10,7 @@ namespace packmerger {
 // Merges points nearer than tolerance_mm (0: equal ones) into the first of them, drops points that
 // no triangle uses, and keeps the order of what is left. Triangles keep their number and order;
 // some may have a corner twice afterwards.
-TriangleSoup welded(const TriangleSoup& soup, double tolerance_mm);
-
-// Drops points that no triangle uses; the order of the others is kept.
-TriangleSoup without_unused_points(const TriangleSoup& soup);
+TriangleSoup welded(const TriangleView& surface, double tolerance_mm);
 
 // Drops triangles that have a corner twice. Returns how many.
 int drop_collapsed(TriangleSoup& soup);
@@ -30,20 +27,20 @@ int count_open_edges(const TriangleSoup& soup);
 
 // Points at which the surface is open, has edges with more than two sides or sides that are not
 // alike, or at which several fans of triangles touch; in order.
-std::vector<int> non_manifold_points(const TriangleSoup& soup);
+std::vector<int> non_manifold_points(const TriangleView& soup);
 
 // There is no such point.
-bool is_closed_manifold(const TriangleSoup& soup);
+bool is_closed_manifold(const TriangleView& soup);
 
 // For each triangle the number of its edge-connected component, from 0 in order of first triangle.
 struct Components {
   std::vector<int> of_triangle;
   int count = 0;
 };
-Components components_of(const TriangleSoup& soup);
+Components components_of(const TriangleView& soup);
 
 // One soup a component, in order; points renumbered in order.
-std::vector<TriangleSoup> split_components(const TriangleSoup& soup);
+std::vector<TriangleSoup> split_components(const TriangleView& soup);
 
 // Adds a copy of more to soup.
 void append(TriangleSoup& soup, const TriangleSoup& more);

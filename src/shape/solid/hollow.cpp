@@ -32,7 +32,7 @@ constexpr double kThinShare = 0.5;
 constexpr std::size_t kAsked = 1000;
 constexpr double kErring = 0.05;
 
-double distance_to(const SurfaceQuery& outer, const TriangleSoup& soup) {
+double distance_to(const SurfaceQuery& outer, const TriangleView& soup) {
   std::vector<double> distances(soup.triangles.size());
   parallel_for(soup.triangles.size(), [&](std::size_t i) {
     const auto& [a, b, c] = soup.triangles[i];
@@ -48,9 +48,8 @@ double distance_to(const SurfaceQuery& outer, const TriangleSoup& soup) {
   return *std::min_element(distances.begin(), distances.end());
 }
 
-bool is_good(const TriangleSoup& boundary, const SurfaceQuery& outer, double wall_mm) {
-  return distance_to(outer, boundary) >= kLeastWall * wall_mm &&
-         !self_intersects(closed_mesh(boundary));
+bool is_good(const Mesh& boundary, const SurfaceQuery& outer, double wall_mm) {
+  return distance_to(outer, boundary) >= kLeastWall * wall_mm && !self_intersects(boundary);
 }
 
 // The grid rounds off edges; points that came too near to the outer surface go back to the depth.
@@ -65,11 +64,11 @@ TriangleSoup pushed_to_depth(TriangleSoup soup, const SurfaceQuery& outer, doubl
 }
 
 // The cavity's boundary with fewer triangles; empty when no attempt keeps the wall.
-std::optional<TriangleSoup> coarse_boundary(const TriangleSoup& fine, const SurfaceQuery& outer,
-                                            double wall_mm, const Progress& progress) {
-  const TriangleSoup pushed = pushed_to_depth(fine, outer, wall_mm);
+std::optional<Mesh> coarse_boundary(TriangleSoup fine, const SurfaceQuery& outer, double wall_mm,
+                                    const Progress& progress) {
+  const Mesh pushed = closed_mesh(pushed_to_depth(std::move(fine), outer, wall_mm));
   for (const double fraction : {1.0, 0.4, 0.1}) {
-    TriangleSoup coarse =
+    Mesh coarse =
         coarsened(pushed, fraction * kCoarsening * wall_mm, kLongestEdge * wall_mm, progress);
     if (is_good(coarse, outer, wall_mm)) return coarse;
   }
@@ -96,20 +95,20 @@ bool is_enclosed_once(const TriangleSoup& level, const SurfaceQuery& outer) {
 
 // The boundaries of the cavities at a depth of at least wall_mm, normals pointing away from the
 // hollow. Deeper levels are tried where the grid is too coarse for one.
-std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& outer,
-                                     const ShapeSettings& settings, const Progress& progress) {
+std::vector<Mesh> boundaries(DistanceGrid& grid, const SurfaceQuery& outer,
+                             const ShapeSettings& settings, const Progress& progress) {
   for (const double extra : {0.0, 0.5, 1.0}) {
     const double depth = settings.wall_mm + extra * settings.voxel_mm;
-    std::vector<TriangleSoup> all;
+    std::vector<Mesh> all;
     const std::optional<TriangleSoup> level = grid.level(-depth, progress);
     if (!level) continue;
     bool good = true;
-    for (const TriangleSoup& fine : split_components(*level)) {
+    for (TriangleSoup& fine : split_components(*level)) {
       // Islands of matter in a cavity have a negative volume.
       if (!good || signed_volume_mm3(fine) < settings.min_cavity_mm3) continue;
       if (!is_enclosed_once(fine, outer)) continue;
       progress.report("hollowing", 0.6);
-      auto coarse = coarse_boundary(fine, outer, settings.wall_mm, progress);
+      auto coarse = coarse_boundary(std::move(fine), outer, settings.wall_mm, progress);
       good = coarse.has_value();
       if (coarse) all.push_back(std::move(*coarse));
     }
@@ -120,17 +119,17 @@ std::vector<TriangleSoup> boundaries(DistanceGrid& grid, const SurfaceQuery& out
 }
 
 // The model's own cavities whose wall would float free in the new cavities join them.
-Mesh without_swallowed_cavities(const Mesh& outer, const std::vector<TriangleSoup>& hollows) {
-  const std::vector<TriangleSoup> parts = split_components(to_soup(outer));
+Mesh without_swallowed_cavities(const Mesh& outer, const std::vector<Mesh>& hollows) {
+  std::vector<TriangleSoup> parts = split_components(outer);
   if (parts.size() == 1 || hollows.empty()) return outer;
   std::vector<SurfaceQuery> queries;
-  for (const TriangleSoup& hollow : hollows) queries.emplace_back(hollow);
+  for (const Mesh& hollow : hollows) queries.emplace_back(hollow);
   std::vector<Mesh> kept;
-  for (const TriangleSoup& part : parts) {
+  for (TriangleSoup& part : parts) {
     const bool swallowed = std::any_of(queries.begin(), queries.end(), [&](const auto& query) {
       return query.winding_number(part.points[0]) != 0;
     });
-    if (!swallowed) kept.push_back(closed_mesh(part));
+    if (!swallowed) kept.push_back(closed_mesh(std::move(part)));
   }
   if (kept.size() == parts.size()) return outer;
   std::vector<const Mesh*> meshes;
@@ -140,7 +139,7 @@ Mesh without_swallowed_cavities(const Mesh& outer, const std::vector<TriangleSou
 
 // Share of the outer surface below which there are less than two walls of matter.
 double thin_share(const Mesh& outer, const SurfaceQuery& query, double wall_mm) {
-  const TriangleSoup soup = to_soup(outer);
+  const TriangleView soup(outer);
   std::vector<double> areas(soup.triangles.size());
   std::vector<char> thin(soup.triangles.size());
   parallel_for(soup.triangles.size(), [&](std::size_t i) {
@@ -200,11 +199,11 @@ Shell hollow(const Mesh& outer, const ShapeSettings& settings, Warnings& warning
                     progress);
   progress.report("hollowing", 0.4);
   const SurfaceQuery query(outer);
-  const std::vector<TriangleSoup> hollows = boundaries(grid, query, settings, progress);
+  const std::vector<Mesh> hollows = boundaries(grid, query, settings, progress);
   Shell shell = solid_shell(without_swallowed_cavities(outer, hollows), settings);
-  for (const TriangleSoup& boundary : hollows) {
+  for (const Mesh& boundary : hollows) {
     shell.cavity_points.push_back(point_inside(boundary));
-    shell.cavities.push_back(closed_mesh(turned(boundary)));
+    shell.cavities.push_back(closed_mesh(turned(to_soup(boundary))));
     shell.volume_mm3 += volume_mm3(shell.cavities.back());  // negative
   }
   if (!(shell.volume_mm3 > 0))

@@ -7,7 +7,7 @@
 
 namespace packmerger {
 
-Vec3 point_inside(const TriangleSoup& soup) {
+Vec3 point_inside(const TriangleView& soup) {
   constexpr std::size_t kChords = 64;
   const SurfaceQuery query(soup);
   Vec3 best = Vec3::Zero();

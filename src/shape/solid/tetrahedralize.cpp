@@ -62,10 +62,9 @@ TetgenInput input_for(const Shell& shell, const ShapeSettings& settings, double 
   TetgenInput input;
   input.flags = complete_flags(settings.tetgen_flags, max_volume_mm3);
   const double max_edge = longest_surface_edge_mm(max_volume_mm3);
-  const TriangleSoup outer = to_soup(shell.outer);
-  add_facets(input, outer, kOutsideMarker, max_edge);
-  for (const TriangleSoup& part : split_components(outer))
-    if (signed_volume_mm3(part) < 0) input.holes.push_back(point_inside(turned(part)));
+  add_facets(input, to_soup(shell.outer), kOutsideMarker, max_edge);
+  for (TriangleSoup& part : split_components(shell.outer))
+    if (signed_volume_mm3(part) < 0) input.holes.push_back(point_inside(turned(std::move(part))));
   for (const Mesh& cavity : shell.cavities)
     add_facets(input, to_soup(cavity), kCavityMarker, max_edge);
   input.holes.insert(input.holes.end(), shell.cavity_points.begin(), shell.cavity_points.end());

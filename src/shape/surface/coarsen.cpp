@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <utility>
 
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
 #include <OpenMesh/Tools/Decimater/ModEdgeLengthT.hh>
@@ -57,21 +59,14 @@ class Watch : public OpenMesh::Decimater::Observer {
 
 PlainMesh to_plain(const Mesh& mesh) {
   PlainMesh plain;
-  for (const auto vertex : mesh.vertices()) {
-    const Vec3& p = mesh.point(vertex);
-    plain.add_vertex({p.x(), p.y(), p.z()});
-  }
-  for (const auto face : mesh.faces()) {
-    std::array<PlainMesh::VertexHandle, 3> corners;
-    int i = 0;
-    for (const auto vertex : face.vertices_ccw())
-      corners[i++] = PlainMesh::VertexHandle(vertex.idx());
-    plain.add_face(corners[0], corners[1], corners[2]);
-  }
+  plain.reserve(mesh.n_points(), mesh.n_triangles() * 3 / 2, mesh.n_triangles());
+  for (const Vec3& p : mesh.points()) plain.add_vertex({p.x(), p.y(), p.z()});
+  const auto vertex = [](int i) { return PlainMesh::VertexHandle(i); };
+  for (const auto& [a, b, c] : mesh.triangles()) plain.add_face(vertex(a), vertex(b), vertex(c));
   return plain;
 }
 
-TriangleSoup from_plain(const PlainMesh& plain) {
+Mesh from_plain(const PlainMesh& plain) {
   TriangleSoup soup;
   for (const auto vertex : plain.vertices()) {
     const auto& p = plain.point(vertex);
@@ -83,17 +78,17 @@ TriangleSoup from_plain(const PlainMesh& plain) {
     for (const auto vertex : face.vertices_ccw()) triangle[i++] = vertex.idx();
     soup.triangles.push_back(triangle);
   }
-  return soup;
+  return closed_mesh(std::move(soup));
 }
 
 }  // namespace
 
-TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max_edge_mm,
-                       const Progress& progress) {
-  PlainMesh mesh = to_plain(closed_mesh(soup));
-  mesh.request_face_normals();
-  mesh.update_face_normals();
-  Decimater decimater(mesh);
+Mesh coarsened(const Mesh& mesh, double tolerance_mm, double max_edge_mm,
+               const Progress& progress) {
+  PlainMesh plain = to_plain(mesh);
+  plain.request_face_normals();
+  plain.update_face_normals();
+  Decimater decimater(plain);
   OpenMesh::Decimater::ModHandleT<QuadricAndLength> quadric;
   decimater.add(quadric);
   // A quadric sums area times squared distance, each triangle three times.
@@ -114,8 +109,8 @@ TriangleSoup coarsened(const TriangleSoup& soup, double tolerance_mm, double max
   decimater.initialize();
   decimater.decimate_to_faces(0, 0);
   progress.check();
-  mesh.garbage_collection();
-  return from_plain(mesh);
+  plain.garbage_collection();
+  return from_plain(plain);
 }
 
 }  // namespace packmerger

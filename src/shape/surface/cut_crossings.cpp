@@ -37,13 +37,13 @@ constexpr std::size_t kMostPairs = 2000000;
 struct TooMany {};
 
 // Pairs of triangles that meet other than in the edge or corner they share.
-std::vector<Pair> crossing_pairs(const TriangleSoup& soup, const Progress& progress) {
+std::vector<Pair> crossing_pairs(const Mesh& surface, const Progress& progress) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   CGAL::Surface_mesh<Kernel::Point_3> mesh;
   using Index = CGAL::SM_Vertex_index;
   const auto index = [](int i) { return Index(static_cast<Index::size_type>(i)); };
-  for (const Vec3& p : soup.points) mesh.add_vertex({p.x(), p.y(), p.z()});
-  for (const auto& [a, b, c] : soup.triangles) mesh.add_face(index(a), index(b), index(c));
+  for (const Vec3& p : surface.points()) mesh.add_vertex({p.x(), p.y(), p.z()});
+  for (const auto& [a, b, c] : surface.triangles()) mesh.add_face(index(a), index(b), index(c));
   std::vector<Pair> pairs;
   CGAL::Polygon_mesh_processing::self_intersections(
       mesh, boost::make_function_output_iterator([&](const auto& pair) {
@@ -237,9 +237,8 @@ class Cutter {
 
 std::optional<TriangleSoup> cut_at_crossings(const Mesh& mesh, const Progress& progress) {
   try {
-    const TriangleSoup soup = to_soup(mesh);
-    const std::vector<Pair> pairs = crossing_pairs(soup, progress);
-    return Cutter(welded(soup, 0), progress).pieces(pairs);
+    const std::vector<Pair> pairs = crossing_pairs(mesh, progress);
+    return Cutter(welded(mesh, 0), progress).pieces(pairs);
   } catch (const TooMany&) {
     return std::nullopt;
   }

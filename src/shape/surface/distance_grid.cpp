@@ -76,7 +76,7 @@ struct Layer {
 
 // A component inside another one has a smaller box, so it comes later.
 std::vector<Layer> layers_of(const Mesh& mesh) {
-  std::vector<TriangleSoup> parts = split_components(to_soup(mesh));
+  std::vector<TriangleSoup> parts = split_components(mesh);
   std::stable_sort(parts.begin(), parts.end(), [](const TriangleSoup& a, const TriangleSoup& b) {
     return bounding_box(a).volume() > bounding_box(b).volume();
   });

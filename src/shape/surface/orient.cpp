@@ -93,7 +93,7 @@ Orientation orient_outwards(TriangleSoup& soup) {
     if (fate == Fate::kTurn) std::swap(triangles.back()[1], triangles.back()[2]);
   }
   soup.triangles = std::move(triangles);
-  soup = without_unused_points(soup);
+  soup = without_unused_points(std::move(soup));
   return result;
 }
 

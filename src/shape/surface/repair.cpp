@@ -64,12 +64,12 @@ struct Counts {
       "Repair it in a mesh editor (Blender: 3D-Print Toolbox, Make Manifold) and try again.");
 }
 
-CgalMesh to_cgal(const TriangleSoup& soup) {
+CgalMesh to_cgal(const Mesh& surface) {
   CgalMesh mesh;
-  for (const Vec3& p : soup.points) mesh.add_vertex({p.x(), p.y(), p.z()});
+  for (const Vec3& p : surface.points()) mesh.add_vertex({p.x(), p.y(), p.z()});
   using Index = CgalMesh::Vertex_index;
   const auto index = [](int i) { return Index(static_cast<Index::size_type>(i)); };
-  for (const auto& [a, b, c] : soup.triangles) mesh.add_face(index(a), index(b), index(c));
+  for (const auto& [a, b, c] : surface.triangles()) mesh.add_face(index(a), index(b), index(c));
   return mesh;
 }
 
@@ -258,11 +258,11 @@ Mesh repair(const TriangleSoup& input, Warnings& warnings, const Progress& progr
   if (counts.any())
     warn_of_change({before, is_closed, soup, counts.is_skin, counts.swallowed > 0}, warnings,
                    progress);
-  Mesh mesh = closed_mesh(soup);
+  Mesh mesh = closed_mesh(std::move(soup));
   progress.report("repairing", 1);
   return mesh;
 }
 
-bool self_intersects(const Mesh& mesh) { return pmp::does_self_intersect(to_cgal(to_soup(mesh))); }
+bool self_intersects(const Mesh& mesh) { return pmp::does_self_intersect(to_cgal(mesh)); }
 
 }  // namespace packmerger

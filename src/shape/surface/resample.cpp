@@ -54,7 +54,7 @@ std::vector<Vec3> spread(const Vec3& a, const Vec3& b, const Vec3& c, double ste
 // The largest distance from points on soup to target, over those that `counts` accepts; it is asked
 // beside the triangle's border, on which other sheets often stand.
 template <typename Counts>
-double furthest(const TriangleSoup& soup, const SurfaceQuery& target, double step,
+double furthest(const TriangleView& soup, const SurfaceQuery& target, double step,
                 const Counts& counts, const Progress& progress) {
   std::vector<double> of_triangle(soup.triangles.size(), 0);
   parallel_for(soup.triangles.size(), [&](std::size_t i) {
@@ -74,8 +74,8 @@ double furthest(const TriangleSoup& soup, const SurfaceQuery& target, double ste
   return of_triangle.empty() ? 0 : *std::max_element(of_triangle.begin(), of_triangle.end());
 }
 
-double deviation(const TriangleSoup& model, const SurfaceQuery& model_query,
-                 const TriangleSoup& surface, double tolerance_mm, double step,
+double deviation(const TriangleView& model, const SurfaceQuery& model_query,
+                 const TriangleView& surface, double tolerance_mm, double step,
                  const Progress& progress) {
   const SurfaceQuery surface_query(surface);
   const auto all = [](const Vec3&, const Vec3&) { return true; };
@@ -117,10 +117,9 @@ TriangleSoup moved_back(TriangleSoup soup, const SurfaceQuery& model, double vox
 std::optional<Mesh> clean(const TriangleSoup& fine, const SurfaceQuery& model, double voxel_mm,
                           double tolerance_mm, double max_edge_mm, const Progress& progress) {
   for (const bool move : {true, false}) {
-    const TriangleSoup soup = move ? moved_back(fine, model, voxel_mm, progress) : fine;
+    const Mesh full = closed_mesh(move ? moved_back(fine, model, voxel_mm, progress) : fine);
     for (const double fraction : {1.0, 0.3}) {
-      Mesh mesh = closed_mesh(
-          coarsened(soup, fraction * kCoarsening * tolerance_mm, max_edge_mm, progress));
+      Mesh mesh = coarsened(full, fraction * kCoarsening * tolerance_mm, max_edge_mm, progress);
       if (!self_intersects(mesh)) return mesh;
     }
   }
@@ -129,16 +128,14 @@ std::optional<Mesh> clean(const TriangleSoup& fine, const SurfaceQuery& model, d
 
 // Where surfaces are compared, and how closely.
 struct Measure {
-  Measure(const Mesh& mesh, const TriangleSoup& soup, const SurfaceQuery& soup_query,
-          double tolerance)
-      : model(soup), query(soup_query), tolerance_mm(tolerance) {
+  Measure(const Mesh& mesh, double tolerance) : model(mesh), query(mesh), tolerance_mm(tolerance) {
     const double size = bounding_box(mesh).diagonal().norm();
     step_mm = std::max(tolerance, kStep * size);
     max_edge_mm = kLongestEdge * size;
   }
 
-  const TriangleSoup& model;
-  const SurfaceQuery& query;
+  Mesh model;
+  SurfaceQuery query;
   double tolerance_mm;
   double step_mm = 0;
   double max_edge_mm = 0;  // of a coarsened surface
@@ -146,7 +143,7 @@ struct Measure {
 
   // The surface with its deviation, if it may stand in for the model.
   std::optional<Resampled> accepted(Mesh surface, const Progress& progress) {
-    const double found = deviation(model, query, to_soup(surface), tolerance_mm, step_mm, progress);
+    const double found = deviation(model, query, surface, tolerance_mm, step_mm, progress);
     best_mm = std::min(best_mm, found);
     if (found > tolerance_mm) return std::nullopt;
     return Resampled{std::move(surface), found};
@@ -162,8 +159,7 @@ std::optional<Resampled> from_hull(const Mesh& mesh, Measure& measure, const Pro
     if (!hull) return std::nullopt;
     if (!self_intersects(*hull)) return measure.accepted(std::move(*hull), progress);
     if (mend > 0) {
-      hull = closed_mesh(
-          coarsened(to_soup(*hull), mend * measure.tolerance_mm, measure.max_edge_mm, progress));
+      hull = coarsened(*hull, mend * measure.tolerance_mm, measure.max_edge_mm, progress);
       if (!self_intersects(*hull)) return measure.accepted(std::move(*hull), progress);
     }
     hull = outer_hull(*hull, gap_mm, progress);
@@ -194,17 +190,13 @@ std::optional<Resampled> from_grid(const Mesh& mesh, Measure& measure, const Pro
 
 Resampled resample(const Mesh& mesh, double tolerance_mm, const Progress& progress) {
   progress.report("re-sampling", 0);
-  const TriangleSoup model = to_soup(mesh);
-  const SurfaceQuery query(model);
-  Measure measure(mesh, model, query, tolerance_mm);
+  Measure measure(mesh, tolerance_mm);
   if (auto result = from_hull(mesh, measure, progress)) return std::move(*result);
   return resample_on_grid(mesh, tolerance_mm, progress);
 }
 
 Resampled resample_on_grid(const Mesh& mesh, double tolerance_mm, const Progress& progress) {
-  const TriangleSoup model = to_soup(mesh);
-  const SurfaceQuery query(model);
-  Measure measure(mesh, model, query, tolerance_mm);
+  Measure measure(mesh, tolerance_mm);
   if (auto result = from_grid(mesh, measure, progress)) return std::move(*result);
   throw Error(Fault::kBadInput,
               "The surface cannot be used as it is and could not be re-sampled within " +

@@ -48,17 +48,16 @@ struct SurfaceQuery::Tree {
   }
 };
 
-SurfaceQuery::SurfaceQuery(const TriangleSoup& soup) : tree_(std::make_unique<Tree>()) {
-  tree_->triangles.reserve(soup.triangles.size());
-  for (const auto& [a, b, c] : soup.triangles)
-    tree_->triangles.emplace_back(to_cgal(soup.points[a]), to_cgal(soup.points[b]),
-                                  to_cgal(soup.points[c]));
+SurfaceQuery::SurfaceQuery(const TriangleView& surface) : tree_(std::make_unique<Tree>()) {
+  tree_->triangles.reserve(surface.triangles.size());
+  for (const auto& [a, b, c] : surface.triangles)
+    tree_->triangles.emplace_back(to_cgal(surface.points[a]), to_cgal(surface.points[b]),
+                                  to_cgal(surface.points[c]));
   tree_->aabb.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
   tree_->aabb.build();
   tree_->aabb.accelerate_distance_queries();  // now, since later it would not be thread-safe
 }
 
-SurfaceQuery::SurfaceQuery(const Mesh& mesh) : SurfaceQuery(to_soup(mesh)) {}
 SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
 SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
 SurfaceQuery::~SurfaceQuery() = default;

@@ -11,9 +11,8 @@ namespace packmerger {
 // Copies what it needs; const members may be called from any thread.
 class SurfaceQuery {
  public:
-  // soup: at least one triangle; need be neither closed nor manifold.
-  explicit SurfaceQuery(const TriangleSoup& soup);
-  explicit SurfaceQuery(const Mesh& mesh);
+  // surface: at least one triangle; need be neither closed nor manifold.
+  explicit SurfaceQuery(const TriangleView& surface);
   SurfaceQuery(SurfaceQuery&&) noexcept;
   SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
   ~SurfaceQuery();

@@ -103,8 +103,8 @@ TEST(StandBest, NeverStandsOnAPointWhatIsSliced) {
         stand_best({std::make_shared<const Mesh>(closed_mesh(soup))}, profile, Progress());
     ASSERT_TRUE(best);
     const Mesh standing = trays_of(*best).front().parts.front();
-    EXPECT_GE(std::count_if(standing.vertices_begin(), standing.vertices_end(),
-                            [&](const auto& v) { return standing.point(v)[2] < 1e-6; }),
+    EXPECT_GE(std::count_if(standing.points().begin(), standing.points().end(),
+                            [](const Vec3& point) { return point.z() < 1e-6; }),
               3)
         << "a face is on the plate";
   }
@@ -122,8 +122,8 @@ TEST(StandBest, NeverStandsOnAnEdgeWhatIsSliced) {
                                read_profile("marlin"), Progress());
   ASSERT_TRUE(best);
   const Mesh standing = trays_of(*best).front().parts.front();
-  EXPECT_GE(std::count_if(standing.vertices_begin(), standing.vertices_end(),
-                          [&](const auto& v) { return standing.point(v)[2] < 1e-6; }),
+  EXPECT_GE(std::count_if(standing.points().begin(), standing.points().end(),
+                          [](const Vec3& point) { return point.z() < 1e-6; }),
             3);
 }
 

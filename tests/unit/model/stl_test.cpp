@@ -20,7 +20,7 @@ using fixtures::sphere;
 TEST(Stl, HoldsTheSameSurface) {
   const Mesh mesh = closed_mesh(fixtures::nested_cubes(30, 20));
   const auto facets = read_back::stl_facets(binary_stl({&mesh}));
-  EXPECT_EQ(facets.size(), mesh.n_faces());
+  EXPECT_EQ(facets.size(), mesh.n_triangles());
   EXPECT_TRUE(read_back::is_closed(facets));
   EXPECT_NEAR(read_back::volume(facets), 27000 - 8000, 1e-6);
 }
@@ -48,7 +48,7 @@ TEST(Stl, StaysClosedWhereFloatsWeldVertices) {
   ASSERT_LT(welded.size(), soup.points.size()) << "the test must force rounding to weld";
 
   const auto facets = read_back::stl_facets(binary_stl({&mesh}));
-  EXPECT_EQ(facets.size(), mesh.n_faces());
+  EXPECT_EQ(facets.size(), mesh.n_triangles());
   EXPECT_TRUE(read_back::is_closed(facets));
   const auto points = float_points({&mesh}).front();
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -64,11 +64,11 @@ TEST(Stl, PartsThatTouchDoNotWeld) {
 }
 
 TEST(Stl, NothingSinksBelowThePlate) {
-  Mesh mesh = closed_mesh(sphere(20, 3));
+  TriangleSoup soup = sphere(20, 3);
   double low = 0;
-  for (const auto vertex : mesh.vertices()) low = std::min(low, mesh.point(vertex).z());
-  for (const auto vertex : mesh.vertices())
-    mesh.set_point(vertex, mesh.point(vertex) + Vec3(20, 20, -low - 1e-13));
+  for (const Vec3& point : soup.points) low = std::min(low, point.z());
+  for (Vec3& point : soup.points) point += Vec3(20, 20, -low - 1e-13);
+  const Mesh mesh = closed_mesh(soup);
   for (const auto& facet : read_back::stl_facets(binary_stl({&mesh})))
     for (const auto& corner : facet) EXPECT_GE(corner[2], 0);
 }
@@ -108,8 +108,9 @@ TEST(Stl, RealModelsStayClosedInAnyPose) {
 TEST(Stl, NumbersThatAreNoCoordinatesAreRefused) {
   for (const double bad :
        {std::numeric_limits<double>::infinity(), 1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    Mesh mesh = closed_mesh(fixtures::cube(10));
-    mesh.set_point(Mesh::VertexHandle(3), Vec3(bad, 0, 0));
+    TriangleSoup soup = fixtures::cube(10);
+    soup.points[3] = Vec3(bad, 0, 0);
+    const Mesh mesh = closed_mesh(soup);
     EXPECT_THROW(binary_stl({&mesh}), Error);
   }
 }

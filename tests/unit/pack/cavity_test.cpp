@@ -22,10 +22,10 @@ SolidGrid grid_of(const Vec3& build_mm, double gap_mm, double cell_mm = 0.5) {
 }
 
 SolidPart drawn(const Mesh& mesh, const SolidGrid& grid) {
-  TriangleSoup soup = to_soup(mesh);
+  std::vector<Vec3> points = mesh.points();
   const Vec3 low = bounding_box(mesh).min();
-  for (Vec3& point : soup.points) point -= low;
-  return solid_part({soup}, grid);
+  for (Vec3& point : points) point -= low;
+  return solid_part({mesh.with_points(points)}, grid);
 }
 
 Mesh upside_down(const Mesh& mesh) {
@@ -97,8 +97,8 @@ Mesh random_solid(Random& random) {
 
 bool inside(const Mesh& mesh, const Vec3& p) {
   double sum = 0;
-  for (const auto face : mesh.faces()) {
-    const auto corner = corners(mesh, face);
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto corner = mesh.corners(i);
     const Vec3 a = corner[0] - p;
     const Vec3 b = corner[1] - p;
     const Vec3 c = corner[2] - p;
@@ -115,7 +115,7 @@ RC_GTEST_PROP(SolidPart, SpansHoldAllMatterAndLittleElse, (std::uint64_t seed)) 
   pose.translation() = -bounding_box(mesh).min() + Vec3(random.unit(), random.unit(), 0);
   mesh = transformed(mesh, pose);
   const SolidGrid grid = grid_of(Vec3(40, 40, 40), 0, 0.7);
-  const SolidPart part = solid_part({to_soup(mesh)}, grid);
+  const SolidPart part = solid_part({mesh}, grid);
   const auto spans = [&](const Vec3& p) {
     return std::any_of(part.matter.begin(), part.matter.end(), [&](const SpanCell& cell) {
       return cell.x == static_cast<int>(p.x() / grid.cell_mm) &&

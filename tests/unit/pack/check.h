@@ -19,8 +19,8 @@ inline std::vector<Triangle> placed_triangles(const PackProblem& problem, const 
   std::vector<Triangle> triangles;
   for (const int item : part.items) {
     const Mesh& mesh = problem.items[static_cast<std::size_t>(item)].surface;
-    for (const auto face : mesh.faces()) {
-      Triangle triangle = corners(mesh, face);
+    for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+      Triangle triangle = mesh.corners(i);
       for (Vec3& corner : triangle) corner = part.pose * corner;
       triangles.push_back(triangle);
     }

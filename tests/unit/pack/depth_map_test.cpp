@@ -69,7 +69,7 @@ struct Heights {
 };
 
 // The least and greatest height in every cell, each grown by `room` on all sides.
-Heights clipped_heights(const TriangleSoup& surface, const DepthMaps& maps, double grid,
+Heights clipped_heights(const TriangleView& surface, const DepthMaps& maps, double grid,
                         double room) {
   Heights heights{std::vector<double>(maps.low.size(), kNothingAbove),
                   std::vector<double>(maps.low.size(), kNothingBelow)};
@@ -99,7 +99,7 @@ RC_GTEST_PROP(DepthMaps, BoundsAreThoseOfTheTrianglesClippedToTheCells, (std::ui
   constexpr double kRoom_mm = 1e-6;
   Random random(seed);
   const double grid = random.below(3) == 0 ? 1 : 0.7 + 2 * random.unit();
-  const TriangleSoup surface = to_soup(any_shape(random));
+  const Mesh surface = any_shape(random);
   const DepthMaps maps = draw_depth_maps(surface, grid, 0);
   const Heights least = clipped_heights(surface, maps, grid, -kRoom_mm);
   const Heights most = clipped_heights(surface, maps, grid, kRoom_mm);
@@ -113,8 +113,8 @@ RC_GTEST_PROP(DepthMaps, BoundsAreThoseOfTheTrianglesClippedToTheCells, (std::ui
 
 // Nothing of the surface lies in a cell without bounds or outside of them.
 void expect_bounds(const DepthMaps& maps, const Mesh& mesh, double grid, Random& random) {
-  for (const auto face : mesh.faces()) {
-    const auto corner = corners(mesh, face);
+  for (std::size_t t = 0; t < mesh.n_triangles(); ++t) {
+    const auto corner = mesh.corners(t);
     const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
     for (int i = 0; i < 40; ++i) {
       double u = random.unit();
@@ -139,7 +139,7 @@ RC_GTEST_PROP(DepthMaps, BoundTheSurfaceInEveryCell, (std::uint64_t seed)) {
   Random random(seed);
   const double grid = 0.5 + random.unit();
   const Mesh mesh = shapes::turned(any_shape(random), shapes::any_rotation(random));
-  const DepthMaps maps = draw_depth_maps(to_soup(mesh), grid, 0);
+  const DepthMaps maps = draw_depth_maps(mesh, grid, 0);
   expect_bounds(maps, mesh, grid, random);
   // Turned by quarters, they bound the turned surface.
   for (int quarters = 1; quarters < 4; ++quarters)
@@ -149,7 +149,7 @@ RC_GTEST_PROP(DepthMaps, BoundTheSurfaceInEveryCell, (std::uint64_t seed)) {
 }
 
 TEST(DepthMaps, ASlopeHasItsCornersBoundsAndItsCentresHeight) {
-  const DepthMaps maps = draw_depth_maps(to_soup(shapes::tetrahedron(20)), 1, 0);
+  const DepthMaps maps = draw_depth_maps(shapes::tetrahedron(20), 1, 0);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
       EXPECT_NEAR(maps.top[at(maps, x, y)], 20 - x - y, 1e-5);
@@ -161,7 +161,7 @@ TEST(DepthMaps, ASlopeHasItsCornersBoundsAndItsCentresHeight) {
 TEST(DepthMaps, ABoxOnTheGridKeepsToItsCells) {
   for (const double grid : {1.0, 0.1, 1.0 / 3}) {
     const DepthMaps maps =
-        draw_depth_maps(to_soup(shapes::box(grid * Vec3(5, 3, 2), grid * Vec3(-2, 1, 4))), grid, 0);
+        draw_depth_maps(shapes::box(grid * Vec3(5, 3, 2), grid * Vec3(-2, 1, 4)), grid, 0);
     EXPECT_EQ(maps.x0, -2);
     EXPECT_EQ(maps.y0, 1);
     ASSERT_EQ(maps.width, 5);
@@ -179,7 +179,7 @@ TEST(DepthMaps, ABoxOnTheGridKeepsToItsCells) {
 TEST(DepthMaps, AStepOnTheGridHasNoRoomBesideItsWall) {
   // The wall stands in the line between columns 2 and 3 of the map and belongs to neither.
   const Mesh step = shapes::l_shape(9, 3, 4);
-  const DepthMaps maps = draw_depth_maps(to_soup(step), 1, 0);
+  const DepthMaps maps = draw_depth_maps(step, 1, 0);
   ASSERT_EQ(maps.width, 9);
   ASSERT_EQ(maps.height, 4);
   for (int y = 0; y < 4; ++y)
@@ -192,8 +192,7 @@ TEST(DepthMaps, AStepOnTheGridHasNoRoomBesideItsWall) {
 
 TEST(DepthMaps, AWallThroughTheMiddleOfCellsCountsInFull) {
   // Both walls lie within one row of cells and neither passes through a centre.
-  const DepthMaps maps =
-      draw_depth_maps(to_soup(shapes::box(Vec3(4, 0.2, 7), Vec3(0.5, 1.6, 2))), 1, 0);
+  const DepthMaps maps = draw_depth_maps(shapes::box(Vec3(4, 0.2, 7), Vec3(0.5, 1.6, 2)), 1, 0);
   ASSERT_EQ(maps.height, 1);
   ASSERT_EQ(maps.width, 5);
   for (std::size_t i = 0; i < maps.low.size(); ++i) {
@@ -207,8 +206,7 @@ TEST(DepthMaps, AWallThroughTheMiddleOfCellsCountsInFull) {
 
 TEST(DepthMaps, CentresOnAnEdgeBelongToOneSide) {
   // A box of 3 × 3 cells whose sides all pass through centres covers nine of them.
-  const DepthMaps maps =
-      draw_depth_maps(to_soup(shapes::box(Vec3(3, 3, 3), Vec3(0.5, 0.5, 0))), 1, 0);
+  const DepthMaps maps = draw_depth_maps(shapes::box(Vec3(3, 3, 3), Vec3(0.5, 0.5, 0)), 1, 0);
   EXPECT_EQ(std::count(maps.bottom.begin(), maps.bottom.end(), 0.0F), 9);
   EXPECT_EQ(std::count(maps.roof.begin(), maps.roof.end(), 3.0F), 9);
 }
@@ -216,10 +214,10 @@ TEST(DepthMaps, CentresOnAnEdgeBelongToOneSide) {
 TEST(DepthMaps, UnitedMapsAreTheMapsOfTheUnion) {
   const Mesh a = shapes::box(Vec3(4, 4, 4), Vec3(0.3, 0.3, 0));
   const Mesh b = shapes::box(Vec3(4, 4, 4), Vec3(2.3, 6.3, 8));
-  const DepthMaps map_a = draw_depth_maps(to_soup(a), 1, 0);
-  const DepthMaps map_b = draw_depth_maps(to_soup(b), 1, 0);
+  const DepthMaps map_a = draw_depth_maps(a, 1, 0);
+  const DepthMaps map_b = draw_depth_maps(b, 1, 0);
   const DepthMaps both = united_maps({&map_a, &map_b});
-  const DepthMaps drawn = draw_depth_maps(to_soup(united(std::vector<const Mesh*>{&a, &b})), 1, 0);
+  const DepthMaps drawn = draw_depth_maps(united(std::vector<const Mesh*>{&a, &b}), 1, 0);
   EXPECT_EQ(both.low, drawn.low);
   EXPECT_EQ(both.top, drawn.top);
   EXPECT_EQ(both.bottom, drawn.bottom);
@@ -233,8 +231,7 @@ RC_GTEST_PROP(DepthMaps, WhatHangsIsTheSupportOfTheColumns, (std::uint64_t seed)
   Random random(seed);
   const double grid = 0.5 + random.unit();
   const double angle = radians(60 * random.unit());
-  const TriangleSoup surface =
-      to_soup(shapes::turned(any_shape(random), shapes::any_rotation(random)));
+  const Mesh surface = shapes::turned(any_shape(random), shapes::any_rotation(random));
   const DepthMaps maps = draw_depth_maps(surface, grid, angle);
   const double plate = maps.box.min().z();
   double support = 0;
@@ -247,8 +244,7 @@ RC_GTEST_PROP(DepthMaps, WhatHangsIsTheSupportOfTheColumns, (std::uint64_t seed)
 RC_GTEST_PROP(DepthMaps, CentresAreTheSameAlone, (std::uint64_t seed)) {
   Random random(seed);
   const double grid = 0.5 + random.unit();
-  const TriangleSoup surface =
-      to_soup(shapes::turned(any_shape(random), shapes::any_rotation(random)));
+  const Mesh surface = shapes::turned(any_shape(random), shapes::any_rotation(random));
   const DepthMaps whole = draw_depth_maps(surface, grid, 0.5);
   const DepthMaps alone = draw_centre_maps(surface, grid, 0.5);
   RC_ASSERT(alone.x0 == whole.x0 && alone.y0 == whole.y0);
@@ -294,8 +290,7 @@ Neighbourhood cells_touching(const DepthMaps& maps, int i, int j) {
 RC_GTEST_PROP(DepthMaps, AgreeWithTheZBufferAtEveryPixel, (std::uint64_t seed)) {
   Random random(seed);
   const double grid = 0.5 + random.unit();
-  const TriangleSoup surface =
-      to_soup(shapes::turned(any_shape(random), shapes::any_rotation(random)));
+  const Mesh surface = shapes::turned(any_shape(random), shapes::any_rotation(random));
   const DepthMaps maps = draw_depth_maps(surface, grid, 0);
   const DepthTriangles triangles = shapes::depth_triangles(surface);
   const RayLattice rays{maps.x0 * grid, maps.y0 * grid, grid / kRays, kRays * maps.width + 1,

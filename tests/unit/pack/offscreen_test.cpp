@@ -12,7 +12,7 @@
 namespace packmerger {
 namespace {
 
-DepthTriangles triangles_of(const Mesh& mesh) { return shapes::depth_triangles(to_soup(mesh)); }
+DepthTriangles triangles_of(const Mesh& mesh) { return shapes::depth_triangles(mesh); }
 
 TEST(Depth, BoxIsFlatAndNothingAroundIt) {
   const Mesh box = shapes::box(Vec3(10, 20, 5), Vec3(3, 4, 7));
@@ -84,7 +84,7 @@ TEST(Draw, MeshHidesWhatLiesBehindItAndTheBackgroundStays) {
   const Mesh red = shapes::box(Vec3(10, 10, 10), Vec3(-5, -5, -5));
   const Mesh green = shapes::box(Vec3(10, 10, 10), Vec3(-5, 30, -5));
   Scene scene;
-  scene.meshes = {{&green, {0, 1, 0}}, {&red, {1, 0, 0}}};
+  scene.meshes = {{green, {0, 1, 0}}, {red, {1, 0, 0}}};
   scene.background = {0, 0, 1};
   scene.lines = {{Vec3(-20, -10, 12), Vec3(20, -10, 12), {0, 0, 0}}};
   Camera camera;
@@ -105,7 +105,7 @@ TEST(Draw, MeshHidesWhatLiesBehindItAndTheBackgroundStays) {
 TEST(Draw, CameraShowsTheWholeBox) {
   const Mesh box = shapes::box(Vec3(30, 20, 60), Vec3(100, 50, 0));
   Scene scene;
-  scene.meshes = {{&box, {1, 0, 0}}};
+  scene.meshes = {{box, {1, 0, 0}}};
   for (const Vec3& direction : {Vec3(1, 2, -1), Vec3(0, 0, -1), Vec3(-1, 0.2, 0.4)})
     for (const double aspect : {0.5, 2.0}) {
       const int height = 100;

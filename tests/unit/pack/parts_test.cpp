@@ -133,7 +133,7 @@ TEST(Search, TellsTheCostOfEachBetterLayout) {
 
 TEST(Columns, CountWhatTheFormulaSays) {
   // A ball on the plate: between it and the plate lie π r³ / 3.
-  const TriangleSoup ball = to_soup(shapes::sphere(10, 96));
+  const Mesh ball = shapes::sphere(10, 96);
   const ColumnSupport support = column_support({ball}, 0.1, 0, -10);
   EXPECT_NEAR(support.below, std::numbers::pi * 1000 / 3, 15);
   EXPECT_EQ(support.inside, 0);
@@ -146,15 +146,15 @@ TEST(Columns, CountWhatTheFormulaSays) {
 
 TEST(Columns, CupUpsideDownIsFullOfSupportAndUprightIsNot) {
   const Mesh cup = shapes::cup(10, 20, 2, 48);
-  EXPECT_NEAR(column_support({to_soup(cup)}, 0.2, 0, 0).below, 0, 1e-9);
+  EXPECT_NEAR(column_support({cup}, 0.2, 0, 0).below, 0, 1e-9);
   Mat3 over = Mat3::Identity();
   over(1, 1) = over(2, 2) = -1;
-  const ColumnSupport support = column_support({to_soup(shapes::turned(cup, over))}, 0.2, 0, -20);
+  const ColumnSupport support = column_support({shapes::turned(cup, over)}, 0.2, 0, -20);
   EXPECT_NEAR(support.below, std::numbers::pi * 64 * 18, 60);
   // On its side, the lower wall carries what supports the upper one.
   Mat3 aside;
   aside << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  EXPECT_GT(column_support({to_soup(shapes::turned(cup, aside))}, 0.2, 0, -10).inside, 1000);
+  EXPECT_GT(column_support({shapes::turned(cup, aside)}, 0.2, 0, -10).inside, 1000);
 }
 
 RC_GTEST_PROP(Columns, AgreeWithTheEnvelopeAtZeroDegrees, (std::uint64_t seed)) {
@@ -162,7 +162,7 @@ RC_GTEST_PROP(Columns, AgreeWithTheEnvelopeAtZeroDegrees, (std::uint64_t seed)) 
   Random random(seed);
   const Mesh bowl = shapes::turned(shapes::bowl(15, 2, 24), shapes::any_rotation(random));
   const double plate = bounding_box(bowl).min().z();
-  const ColumnSupport support = column_support({to_soup(bowl)}, 0.25, 0, plate);
+  const ColumnSupport support = column_support({bowl}, 0.25, 0, plate);
   PackProblem problem = shapes::problem_of({bowl}, Vec3(80, 80, 80));
   PlacedPart part{{0}, Pose::Identity(), 0};
   part.pose.translation() = Vec3(40, 40, -plate);

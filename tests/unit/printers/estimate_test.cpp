@@ -26,12 +26,9 @@ Estimate of(const Profile& profile, std::vector<Mesh> parts, const Assembly& ass
 Mesh standing_bunny(const TriangleSoup& bunny, double height_mm) {
   TriangleSoup soup = printed::with_holes_filled(bunny);
   for (Vec3& p : soup.points) p = Vec3(p.x(), -p.z(), p.y());
-  Mesh mesh = closed_mesh(soup);
+  const Mesh mesh = closed_mesh(soup);
   const Box3 at = bounding_box(mesh);
-  const double scale = height_mm / at.sizes().z();
-  for (const auto vertex : mesh.vertices())
-    mesh.set_point(vertex, (mesh.point(vertex) - at.min()) * scale);
-  return mesh;
+  return printed::scaled(printed::moved(mesh, -at.min()), height_mm / at.sizes().z());
 }
 
 TEST(Polyjet, LayerByHand) {
@@ -243,9 +240,7 @@ TEST(Estimate, MaterialScalesWithTheCube) {
   for (const double scale : {0.5, 1.7, 3.0}) {
     for (const Profile& profile : {fixtures::plain_polyjet(), fixtures::plain_deposition()}) {
       const Mesh small = printed::resting_sphere(10, 3);
-      Mesh large = small;
-      for (const auto vertex : large.vertices())
-        large.set_point(vertex, large.point(vertex) * scale);
+      const Mesh large = printed::scaled(small, scale);
       const Estimate a = of(profile, {small});
       const Estimate b = of(profile, {large});
       const double cube = scale * scale * scale;

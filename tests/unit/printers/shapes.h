@@ -15,6 +15,13 @@ namespace packmerger::printed {
 
 inline Mesh box(const Vec3& low, const Vec3& high) { return closed_mesh(fixtures::box(low, high)); }
 
+// About the origin.
+inline Mesh scaled(const Mesh& mesh, double factor) {
+  std::vector<Vec3> points = mesh.points();
+  for (Vec3& point : points) point *= factor;
+  return mesh.with_points(std::move(points));
+}
+
 inline Mesh moved(const Mesh& mesh, const Vec3& by) {
   Pose pose = Pose::Identity();
   pose.translate(by);

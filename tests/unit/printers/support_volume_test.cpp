@@ -136,9 +136,7 @@ TEST(SupportVolume, ScalesWithTheCubeOfSizeAndIgnoresPlace) {
     Pose pose = Pose::Identity();
     pose.translate(by);
     pose.rotate(Eigen::AngleAxisd(radians(turn), Vec3::UnitZ()));
-    Mesh larger = transformed(model, pose);
-    for (const auto vertex : larger.vertices())
-      larger.set_point(vertex, larger.point(vertex) * scale);
+    const Mesh larger = printed::scaled(transformed(model, pose), scale);
     const double expected = coarse_support({model}, 1 << 14) * scale * scale * scale;
     RC_ASSERT(std::abs(coarse_support({larger}, 1 << 14) - expected) <= 5e-3 * expected);
   }));
@@ -199,11 +197,9 @@ TEST(SupportVolume, RealBunny) {
   PACKMERGER_TEST_MODEL(bunny, "stanford-bunny.obj");
   TriangleSoup standing = printed::with_holes_filled(bunny);
   for (Vec3& p : standing.points) p = Vec3(p.x(), -p.z(), p.y());
-  Mesh mesh = closed_mesh(standing);
-  const Box3 at = bounding_box(mesh);
-  const double scale = 100 / at.sizes().z();
-  for (const auto vertex : mesh.vertices())
-    mesh.set_point(vertex, (mesh.point(vertex) - at.min()) * scale);
+  const Mesh bunny_mesh = closed_mesh(standing);
+  const Box3 at = bounding_box(bunny_mesh);
+  const Mesh mesh = printed::scaled(printed::moved(bunny_mesh, -at.min()), 100 / at.sizes().z());
   // 81.6 cm³ by a column count of another make
   EXPECT_NEAR(support({mesh}), 81600, 81600 * 0.02);
 }

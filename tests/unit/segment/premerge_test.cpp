@@ -48,7 +48,7 @@ bool fits_somehow(const Mesh& part, const BuildVolume& build) {
                        Eigen::AngleAxisd(i % steps * build.rotation_step, Vec3::UnitX()))
                           .toRotationMatrix();
     Box3 box;
-    for (const auto vertex : part.vertices()) box.extend(turn * part.point(vertex));
+    for (const Vec3& point : part.points()) box.extend(turn * point);
     if ((box.sizes().array() <= build.build_mm.array() + 1e-6).all()) return true;
   }
   return false;

@@ -95,7 +95,7 @@ TEST(Heaps, AreUnitedWhateverCrossesOrTouches) {
       ++refused;
       continue;
     }
-    EXPECT_TRUE(is_closed_manifold(to_soup(resampled.surface)));
+    EXPECT_TRUE(is_closed_manifold(resampled.surface));
     EXPECT_FALSE(self_intersects(resampled.surface));
     EXPECT_LE(resampled.deviation_mm, kTolerance_mm);
     if (number % 2 == 0) {
@@ -112,7 +112,7 @@ TEST(Heaps, AreCountedOnceUndivided) {
     const Mesh model = repair(heap(number), warnings, Progress());
     warnings.clear();
     const Mesh united = unite_bodies(model, warnings, Progress());
-    EXPECT_TRUE(is_closed_manifold(to_soup(united)));
+    EXPECT_TRUE(is_closed_manifold(united));
     for (const Warning& warning : warnings)
       EXPECT_EQ(warning.text.find("could not"), std::string::npos) << warning.text;
     if (number % 2 == 0) {

@@ -33,7 +33,7 @@ void expect_good_cavities(const Shell& shell, double wall_mm) {
   double volume = volume_mm3(shell.outer);
   for (std::size_t i = 0; i < shell.cavities.size(); ++i) {
     const Mesh& cavity = shell.cavities[i];
-    const TriangleSoup soup = to_soup(cavity);
+    const TriangleView soup(cavity);
     EXPECT_TRUE(is_closed_manifold(soup));
     EXPECT_EQ(components_of(soup).count, 1);
     EXPECT_FALSE(self_intersects(cavity));
@@ -56,7 +56,7 @@ TEST(Hollow, CubeHasTheWallItIsTold) {
   expect_good_cavities(shell, 3);
   ASSERT_EQ(shell.cavities.size(), 1u);
   EXPECT_NEAR(-volume_mm3(shell.cavities[0]), 34 * 34 * 34, 0.01 * 34 * 34 * 34);
-  EXPECT_LT(shell.cavities[0].n_faces(), 2000u) << "flat faces need few triangles";
+  EXPECT_LT(shell.cavities[0].n_triangles(), 2000u) << "flat faces need few triangles";
   EXPECT_TRUE(warned(warnings, "sealed_cavity"));
   EXPECT_FALSE(warned(warnings, "thin_features"));
 }
@@ -180,7 +180,7 @@ TEST(Hollow, OwnCavityWhoseWallWouldFloatJoinsTheNewOne) {
   const Shell shell = hollowed(fixtures::nested_cubes(60, 20), warnings);
   expect_good_cavities(shell, 3);
   EXPECT_EQ(shell.cavities.size(), 1u);
-  EXPECT_EQ(components_of(to_soup(shell.outer)).count, 1);
+  EXPECT_EQ(components_of(shell.outer).count, 1);
   EXPECT_NEAR(shell.volume_mm3, 60 * 60 * 60 - 54 * 54 * 54, 2000);
 }
 
@@ -188,7 +188,7 @@ TEST(Hollow, OwnCavityStaysWhereThereIsNoRoom) {
   Warnings warnings;
   const Shell shell = hollowed(fixtures::nested_cubes(40, 30), warnings);
   EXPECT_TRUE(shell.cavities.empty());
-  EXPECT_EQ(components_of(to_soup(shell.outer)).count, 2);
+  EXPECT_EQ(components_of(shell.outer).count, 2);
   EXPECT_NEAR(shell.volume_mm3, 40 * 40 * 40 - 30 * 30 * 30, 1e-6);
 }
 
@@ -199,7 +199,7 @@ TEST(Hollow, MatterInAnOwnCavityIsHollowedToo) {
                                   fixtures::box(Vec3::Constant(10), Vec3::Constant(50))),
                warnings);
   expect_good_cavities(shell, 3);
-  EXPECT_EQ(components_of(to_soup(shell.outer)).count, 3);
+  EXPECT_EQ(components_of(shell.outer).count, 3);
   ASSERT_EQ(shell.cavities.size(), 1u);
   EXPECT_NEAR(-volume_mm3(shell.cavities[0]), 34 * 34 * 34, 1000);
 }
@@ -229,8 +229,8 @@ TEST(Hollow, SameBytesOnOneAndTwoThreads) {
   expect_good_cavities(one, 3);
   ASSERT_EQ(one.cavities.size(), two.cavities.size());
   for (std::size_t i = 0; i < one.cavities.size(); ++i) {
-    EXPECT_EQ(to_soup(one.cavities[i]).points, to_soup(two.cavities[i]).points);
-    EXPECT_EQ(to_soup(one.cavities[i]).triangles, to_soup(two.cavities[i]).triangles);
+    EXPECT_EQ(one.cavities[i].points(), two.cavities[i].points());
+    EXPECT_EQ(one.cavities[i].triangles(), two.cavities[i].triangles());
   }
 }
 

@@ -31,7 +31,7 @@ Repaired repaired(const TriangleSoup& soup) {
     EXPECT_THAT(warning.code, testing::AnyOf("repaired", "shape_changed"));
     (warning.code == "repaired" ? result.text : result.changed) = warning.text;
   }
-  EXPECT_TRUE(is_closed_manifold(to_soup(result.mesh)));
+  EXPECT_TRUE(is_closed_manifold(result.mesh));
   return result;
 }
 
@@ -65,7 +65,7 @@ TEST(Repair, CleanInputPassesUnchanged) {
         together(fixtures::cube(5), moved(fixtures::cube(5), {9, 0, 0}))}) {
     const Repaired result = repaired(model);
     EXPECT_EQ(result.text, "");
-    const TriangleSoup out = to_soup(result.mesh);
+    const TriangleView out(result.mesh);
     ASSERT_EQ(out.points.size(), model.points.size());
     for (std::size_t i = 0; i < out.points.size(); ++i) EXPECT_EQ(out.points[i], model.points[i]);
     ASSERT_EQ(out.triangles.size(), model.triangles.size());
@@ -81,7 +81,7 @@ TEST(Repair, CleanInputPassesUnchanged) {
 TEST(Repair, WeldsEqualPointsWithoutAWarning) {
   const Repaired result = repaired(exploded(fixtures::sphere(10, 2)));
   EXPECT_EQ(result.text, "");
-  EXPECT_EQ(result.mesh.n_vertices(), fixtures::sphere(10, 2).points.size());
+  EXPECT_EQ(result.mesh.n_points(), fixtures::sphere(10, 2).points.size());
 }
 
 TEST(Repair, ClosesCracksOfSinglePrecision) {
@@ -90,7 +90,7 @@ TEST(Repair, ClosesCracksOfSinglePrecision) {
     soup.points[i].x() += 1e-6 * (static_cast<double>(i % 7) - 3);
   const Repaired result = repaired(soup);
   EXPECT_THAT(result.text, HasSubstr(" mended"));
-  EXPECT_EQ(result.mesh.n_faces(), soup.triangles.size());
+  EXPECT_EQ(result.mesh.n_triangles(), soup.triangles.size());
 }
 
 TEST(Repair, TurnsInsideOut) {
@@ -173,7 +173,7 @@ TEST(Repair, MendsPointsOnEdges) {
   for (const auto& places : {std::vector{0.5}, {0.25, 0.5}, {0.1, 0.2, 0.3, 0.7, 0.9}, {1.0 / 3}}) {
     const Repaired result = repaired(exploded(cube_with_divided_edge(places)));
     EXPECT_NEAR(volume_mm3(result.mesh), 1000, 1e-4);
-    EXPECT_EQ(result.mesh.n_vertices(), 8 + places.size());
+    EXPECT_EQ(result.mesh.n_points(), 8 + places.size());
     EXPECT_THAT(result.text, HasSubstr(" mended"));
     EXPECT_EQ(result.text.find("filled"), std::string::npos) << result.text;
     EXPECT_EQ(result.changed, "");
@@ -257,7 +257,7 @@ TEST(Repair, DropsDegenerateDoubledAndLooseTriangles) {
   const int base = static_cast<int>(soup.points.size()) - 3;
   soup.triangles.push_back({base, base + 1, base + 2});
   const Repaired result = repaired(soup);
-  EXPECT_EQ(result.mesh.n_faces(), 320u);
+  EXPECT_EQ(result.mesh.n_triangles(), 320u);
   EXPECT_THAT(result.text, HasSubstr("1 facet without area"));
   EXPECT_THAT(result.text, HasSubstr("2 facets removed"));
 }
@@ -317,7 +317,7 @@ TEST(Repair, RandomDamageIsMendedOrRefused) {
     }
     Warnings warnings;
     const Mesh mesh = repair(soup, warnings, Progress());
-    RC_ASSERT(is_closed_manifold(to_soup(mesh)));
+    RC_ASSERT(is_closed_manifold(mesh));
     RC_ASSERT(std::abs(volume_mm3(mesh) - volume) < 0.02 * volume);
     RC_ASSERT(warnings.empty() == (losses == 0));
   }));

@@ -19,7 +19,7 @@ TriangleSoup crossing_balls() {
 }
 
 void expect_clean(const Resampled& resampled, double tolerance) {
-  EXPECT_TRUE(is_closed_manifold(to_soup(resampled.surface)));
+  EXPECT_TRUE(is_closed_manifold(resampled.surface));
   EXPECT_FALSE(self_intersects(resampled.surface));
   EXPECT_LE(resampled.deviation_mm, tolerance);
 }
@@ -28,12 +28,11 @@ TEST(Resample, UnitesWhatOverlaps) {
   const TriangleSoup model = crossing_balls();
   const Resampled resampled = resample(closed_mesh(model), 0.3, Progress());
   expect_clean(resampled, 0.3);
-  EXPECT_EQ(components_of(to_soup(resampled.surface)).count, 1);
+  EXPECT_EQ(components_of(resampled.surface).count, 1);
   EXPECT_GT(volume_mm3(resampled.surface), 4000);
   EXPECT_LT(volume_mm3(resampled.surface), signed_volume_mm3(model)) << "the overlap counts once";
   const SurfaceQuery query(model);
-  for (const Vec3& point : to_soup(resampled.surface).points)
-    EXPECT_LE(query.distance_mm(point), 0.3);
+  for (const Vec3& point : resampled.surface.points()) EXPECT_LE(query.distance_mm(point), 0.3);
 }
 
 TEST(Resample, SharpEdgesStayWithinTheTolerance) {
@@ -49,19 +48,19 @@ TEST(Resample, SameBytesOnOneAndTwoThreads) {
   const Mesh model = closed_mesh(crossing_balls());
   const auto with_threads = [&](std::size_t threads) {
     const ThreadLimit limit(threads);
-    return to_soup(resample(model, 0.4, Progress()).surface);
+    return resample(model, 0.4, Progress()).surface;
   };
-  const TriangleSoup one = with_threads(1);
-  const TriangleSoup two = with_threads(2);
-  EXPECT_EQ(one.points, two.points);
-  EXPECT_EQ(one.triangles, two.triangles);
+  const Mesh one = with_threads(1);
+  const Mesh two = with_threads(2);
+  EXPECT_EQ(one.points(), two.points());
+  EXPECT_EQ(one.triangles(), two.triangles());
 }
 
 TEST(Resample, KeepsTheTrianglesThatDoNotCross) {
   const TriangleSoup model = crossing_balls();
   const Resampled resampled = resample(closed_mesh(model), 0.3, Progress());
   EXPECT_LT(resampled.deviation_mm, 1e-3);
-  EXPECT_LT(resampled.surface.n_faces(), 2 * model.triangles.size());
+  EXPECT_LT(resampled.surface.n_triangles(), 2 * model.triangles.size());
 }
 
 TEST(ResampleOnGrid, IsTheFallBack) {
@@ -85,12 +84,12 @@ TEST(ResampleOnGrid, SameBytesOnOneAndTwoThreads) {
   const Mesh model = closed_mesh(crossing_balls());
   const auto with_threads = [&](std::size_t threads) {
     const ThreadLimit limit(threads);
-    return to_soup(resample_on_grid(model, 0.4, Progress()).surface);
+    return resample_on_grid(model, 0.4, Progress()).surface;
   };
-  const TriangleSoup one = with_threads(1);
-  const TriangleSoup two = with_threads(2);
-  EXPECT_EQ(one.points, two.points);
-  EXPECT_EQ(one.triangles, two.triangles);
+  const Mesh one = with_threads(1);
+  const Mesh two = with_threads(2);
+  EXPECT_EQ(one.points(), two.points());
+  EXPECT_EQ(one.triangles(), two.triangles());
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TriangleSoup boundary(const TetMesh& mesh, FaceSide side) {
   return without_unused_points(soup);
 }
 
-double furthest(const TriangleSoup& from, const TriangleSoup& to) {
+double furthest(const TriangleView& from, const TriangleView& to) {
   const SurfaceQuery query(to);
   double furthest = 0;
   for (const Vec3& point : from.points) furthest = std::max(furthest, query.distance_mm(point));
@@ -104,18 +104,17 @@ void expect_solid(const Made& made, int components = 1) {
   EXPECT_TRUE(is_closed_manifold(outside));
   EXPECT_NEAR(signed_volume_mm3(outside), volume_mm3(shell.outer), 1e-6 * volume_mm3(shell.outer));
   const double tolerance = made.solid.resample_tolerance_mm.value_or(0.1);
-  EXPECT_LE(furthest(outside, to_soup(made.model)), tolerance);
+  EXPECT_LE(furthest(outside, made.model), tolerance);
   if (!made.solid.resample_tolerance_mm) {
-    EXPECT_LE(furthest(to_soup(shell.outer), outside), 1e-9);
+    EXPECT_LE(furthest(shell.outer, outside), 1e-9);
     // TetGen keeps the outer surface's own points exactly.
     const auto less = [](const Vec3& a, const Vec3& b) {
       return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
     };
     std::vector<Vec3> points = outside.points;
     std::sort(points.begin(), points.end(), less);
-    for (const auto vertex : shell.outer.vertices())
-      EXPECT_TRUE(
-          std::binary_search(points.begin(), points.end(), shell.outer.point(vertex), less));
+    for (const Vec3& point : shell.outer.points())
+      EXPECT_TRUE(std::binary_search(points.begin(), points.end(), point, less));
   }
   EXPECT_EQ(boundary(mesh, FaceSide::kCavity).triangles.empty(), shell.cavities.empty());
 }

@@ -105,8 +105,8 @@ TEST(UniteBodies, WhatStandsApartOrOnlyTouchesKeepsItsBytes) {
     Warnings warnings;
     const Mesh mesh = repair(model, warnings, Progress());
     const United united = unite(model);
-    EXPECT_EQ(united.soup.points, to_soup(mesh).points);
-    EXPECT_EQ(united.soup.triangles, to_soup(mesh).triangles);
+    EXPECT_EQ(united.soup.points, mesh.points());
+    EXPECT_EQ(united.soup.triangles, mesh.triangles());
     EXPECT_THAT(united.codes, IsEmpty());
   }
 }

@@ -84,10 +84,11 @@ TEST(Png, SurvivesReadingBack) {
 TEST(CutPicture, DrawsSegmentsHoweverTheyTouchThemselves) {
   ColouredMesh ball;
   ball.surface = closed_mesh(fixtures::sphere(20, 3));
-  for (const auto face : ball.surface.faces()) ball.segment_of_face.push_back(face.idx() % 3);
+  const std::size_t faces = ball.surface.n_triangles();
+  for (std::size_t i = 0; i < faces; ++i) ball.segment_of_face.push_back(static_cast<int>(i % 3));
   ColouredMesh halves = ball;
-  for (const auto face : halves.surface.faces())
-    halves.segment_of_face[face.idx()] = corners(halves.surface, face)[0].x() < 0 ? 0 : 1;
+  for (std::size_t i = 0; i < faces; ++i)
+    halves.segment_of_face[i] = halves.surface.corners(i)[0].x() < 0 ? 0 : 1;
   testing::internal::CaptureStderr();
   const Image image = cut_picture(ball, halves);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "OpenMesh dropped faces";

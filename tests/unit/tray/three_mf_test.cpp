@@ -45,13 +45,12 @@ TEST(ThreeMf, PutsEveryPartWhereItStands) {
   ASSERT_EQ(objects.size(), job.parts.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Mesh& surface = job.parts[i].surface;
-    ASSERT_EQ(objects[i].points.size(), surface.n_vertices());
-    EXPECT_EQ(objects[i].triangles, to_soup(surface).triangles);
-    for (const auto vertex : surface.vertices())
-      EXPECT_LT((objects[i].pose * objects[i].points[static_cast<std::size_t>(vertex.idx())] -
-                 job.parts[i].pose * surface.point(vertex))
-                    .norm(),
-                1e-4);
+    ASSERT_EQ(objects[i].points.size(), surface.n_points());
+    EXPECT_EQ(objects[i].triangles, surface.triangles());
+    for (std::size_t k = 0; k < surface.n_points(); ++k)
+      EXPECT_LT(
+          (objects[i].pose * objects[i].points[k] - job.parts[i].pose * surface.points()[k]).norm(),
+          1e-4);
   }
 }
 

@@ -87,9 +87,8 @@ TEST_F(JobFolder, PartsAndTraysAreClosedAndAgree) {
     for (int k = 0; k < 16; ++k)
       matrix(k / 4, k % 4) = part["transform"][static_cast<std::size_t>(k)];
     const Mesh& surface = job.parts[part["id"].get<std::size_t>() - 1].surface;
-    std::size_t f = 0;
-    for (const auto face : surface.faces()) {
-      const auto expected = corners(surface, face);
+    for (std::size_t f = 0; f < surface.n_triangles(); ++f) {
+      const auto expected = surface.corners(f);
       for (int i = 0; i < 3; ++i) {
         const auto& [x, y, z] = facets[f][static_cast<std::size_t>(i)];
         const Vec3 back = (matrix.inverse() * Eigen::Vector4d(x, y, z, 1)).head<3>();
@@ -97,7 +96,6 @@ TEST_F(JobFolder, PartsAndTraysAreClosedAndAgree) {
         EXPECT_LT(std::min({distance(expected[0]), distance(expected[1]), distance(expected[2])}),
                   1e-3);
       }
-      ++f;
     }
   }
   for (const int tray : {1, 2}) {
