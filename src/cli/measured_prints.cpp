@@ -10,7 +10,7 @@
 #include "job/compare/unpacked.h"
 #include "job/load_models.h"
 #include "job/store/correction.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger::cli {
 namespace {

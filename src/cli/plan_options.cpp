@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/names.h"
 #include "cli/checks.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 namespace packmerger::cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "cli/verb.h"
 #include "delivery/ready_program.h"
 #include "job/compare/comparison_table.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 #include "tray/job_json.h"
 #include "tray/known_ways.h"
 #include "tray/write_job_folder.h"

@@ -21,7 +21,7 @@
 #include "delivery/job_folder.h"
 #include "delivery/progress_file.h"
 #include "delivery/way.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger::cli {
 namespace {

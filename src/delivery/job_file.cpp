@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/names.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 namespace packmerger {
 namespace {

@@ -6,7 +6,8 @@
 
 namespace packmerger {
 
-// The refusal of what is of no format in model/file_format.h: what it is, and what to send instead.
+// The refusal of what is of no format in model/files/file_format.h: what it is, and what to send
+// instead.
 inline constexpr const char* kNotTaken = "This is nothing that PackMerger takes";
 std::string what_is_taken();
 

@@ -10,7 +10,7 @@
 #include "base/json_values.h"
 #include "delivery/child_json.h"
 #include "job/compare/advice.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

@@ -15,7 +15,7 @@
 #include "firmware_io/s3g/s3g_time_marks.h"
 #include "gcode/program_text.h"
 #include "job/compare/comparison_table.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 #include "printers/check/check_moves.h"
 #include "printers/price.h"
 #include "printers/program/x3g.h"

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "delivery/job_folder.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 

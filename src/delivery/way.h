@@ -1,6 +1,6 @@
 // A way of delivery: how printers of a dialect are given their jobs. One constant of this type a
-// way, each in a file of its own below src/delivery/ways; src/delivery/ways/ways.cpp registers them.
-// Whoever sends, watches or configures a printer asks here, and never which dialect it has.
+// way, each in a file of its own below src/delivery/ways; src/delivery/ways/ways.cpp registers
+// them. Whoever sends, watches or configures a printer asks here, and never which dialect it has.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 #include "base/files.h"
 #include "firmware_io/ports/devices.h"
 #include "firmware_io/print_state.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 #include "model/printer.h"
 
 namespace packmerger {

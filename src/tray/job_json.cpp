@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "model/profile/profile_keys.h"
 #include "tray/known_ways.h"
 #include "tray/warnings_json.h"

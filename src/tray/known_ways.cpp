@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "tray/comparison_json.h"
 #include "tray/warnings_json.h"
 

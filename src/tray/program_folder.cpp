@@ -1,6 +1,6 @@
 #include "tray/program_folder.h"
 
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "tray/job_json.h"
 #include "tray/warnings_json.h"
 #include "tray/write_job_folder.h"

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "model/stl.h"
 #include "picture/gltf.h"
 #include "picture/page_scene.h"

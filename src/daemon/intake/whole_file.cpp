@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 namespace packmerger {
 namespace {

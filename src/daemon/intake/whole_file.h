@@ -11,8 +11,8 @@ enum class Whole {
   kUnknown,  // a format that does not tell
 };
 
-// By the end that its format has (FileEnd of model/file_format.h). Reads at most 66 kB. A file that
-// cannot be read is kNo.
+// By the end that its format has (FileEnd of model/files/file_format.h). Reads at most 66 kB. A
+// file that cannot be read is kNo.
 Whole file_is_whole(const std::filesystem::path& path);
 
 // Whether another process has the file open for writing, as far as the kernel tells (it does for

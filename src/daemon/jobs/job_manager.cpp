@@ -6,7 +6,7 @@
 #include "base/storage/move_file.h"
 #include "daemon/jobs/waits.h"
 #include "delivery/progress_file.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

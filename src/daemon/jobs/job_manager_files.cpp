@@ -6,7 +6,7 @@
 #include "daemon/intake/beside.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/job_notes.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

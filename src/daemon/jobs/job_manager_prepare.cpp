@@ -8,8 +8,8 @@
 #include "daemon/settings/workers.h"
 #include "delivery/job_folder.h"
 #include "delivery/way.h"
-#include "model/file_format.h"
-#include "model/job_folder_names.h"
+#include "model/files/file_format.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

@@ -12,8 +12,8 @@
 #include "delivery/child_json.h"
 #include "delivery/job_file.h"
 #include "job/compare/advice.h"
-#include "model/file_format.h"
-#include "model/job_folder_names.h"
+#include "model/files/file_format.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

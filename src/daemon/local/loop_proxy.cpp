@@ -6,7 +6,7 @@
 #include "daemon/local/web_error.h"
 #include "daemon/views/reply.h"
 #include "delivery/job_file.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 namespace packmerger {
 namespace {

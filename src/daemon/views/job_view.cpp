@@ -12,7 +12,7 @@
 #include "delivery/child_json.h"
 #include "job/compare/advice.h"
 #include "model/estimate.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 #include "tray/comparison_json.h"
 
 namespace packmerger {

@@ -12,8 +12,8 @@
 #include "daemon/web/doors/door.h"
 #include "daemon/web/doors/doors.h"
 #include "daemon/web/web_routes.h"
-#include "model/file_format.h"
-#include "model/job_folder_names.h"
+#include "model/files/file_format.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "daemon/web/doors/doors.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 namespace packmerger {
 namespace {

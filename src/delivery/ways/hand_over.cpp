@@ -4,7 +4,7 @@
 #include "base/storage/move_file.h"
 #include "delivery/job_folder.h"
 #include "delivery/tray_to_send.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

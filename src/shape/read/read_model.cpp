@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 #include "shape/read/formats.h"
 #include "shape/read/utf16.h"
 
@@ -122,7 +122,8 @@ bool is_off(const Beginning& file) {
   return std::find(kWords.begin(), kWords.end(), file.first_word) != kWords.end();
 }
 
-// In the order in which they are asked. A format's ending and name stand in model/file_format.
+// In the order in which they are asked. A format's ending and name stand in
+// model/files/file_format.
 constexpr std::array<MeshReader, 5> kReaders = {{
     {"3mf", true,
      [](const Beginning& file) { return file.begins("PK\x03\x04") || file.begins("PK\x05\x06"); },

@@ -19,7 +19,7 @@ constexpr std::uint64_t kMaxModelBytes = std::uint64_t{1} << 30;
 struct ModelFile {
   TriangleSoup soup;      // the file's unit; mm where has_unit
   bool has_unit = false;  // 3MF declares its unit and was converted; the other formats have none
-  std::string format;     // the ending of model/file_format.h, without its dot
+  std::string format;     // the ending of model/files/file_format.h, without its dot
   std::string left_out;   // "2 modifiers": what a 3MF holds besides matter to print; or empty
 };
 

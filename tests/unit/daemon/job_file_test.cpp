@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "delivery/way.h"
 #include "fixtures/fault_of.h"
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 namespace packmerger {
 namespace {

@@ -8,7 +8,7 @@
 #include "delivery/job_folder.h"
 #include "delivery/send.h"
 #include "fixtures/fault_of.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {

@@ -13,7 +13,7 @@
 #include "daemon/web/web_events.h"
 #include "daemon/web/web_guard.h"
 #include "daemon/web/web_routes.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 namespace packmerger {
 namespace {

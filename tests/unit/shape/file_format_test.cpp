@@ -1,5 +1,5 @@
 // The table of formats, and what is held to it: the readers, the words of refusals, the documents.
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 #include <gtest/gtest.h>
 

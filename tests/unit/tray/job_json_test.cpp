@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/files.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "tray/known_ways.h"
 #include "unit/tray/sample_job.h"
 

@@ -12,7 +12,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 #include "unit/tray/read_back.h"
 #include "unit/tray/sample_job.h"
 

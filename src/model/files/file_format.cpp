@@ -1,4 +1,4 @@
-#include "model/file_format.h"
+#include "model/files/file_format.h"
 
 #include <algorithm>
 #include <array>

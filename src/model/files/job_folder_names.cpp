@@ -1,4 +1,4 @@
-#include "model/job_folder_names.h"
+#include "model/files/job_folder_names.h"
 
 #include <fmt/format.h>
 
