@@ -1,14 +1,12 @@
 #include "daemon/notifier.h"
-#include "base/time/wall_clock.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "base/names.h"
-#include "base/time/clock.h"
-
 #include "base/json_values.h"
+#include "base/names.h"
+#include "base/time/wall_clock.h"
 #include "daemon/views/job_view.h"
 #include "daemon/views/printer_view.h"
 

@@ -1,4 +1,3 @@
-#include "base/time/wall_clock.h"
 #include "daemon/intake/folder_worker.h"
 
 #include <poll.h>

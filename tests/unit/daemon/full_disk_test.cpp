@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include "base/time/wall_clock.h"
 #include "unit/daemon/workshop.h"
 
 namespace packmerger {

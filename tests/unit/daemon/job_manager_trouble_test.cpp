@@ -1,6 +1,7 @@
 // What fails again and again is told once, and again when it changes or ends.
 #include <gtest/gtest.h>
 
+#include "base/time/wall_clock.h"
 #include "workshop.h"
 
 namespace packmerger {

@@ -8,7 +8,6 @@
 
 #include "base/sign_of_life.h"
 #include "base/storage/move_file.h"
-#include "base/time/wall_clock.h"
 #include "daemon/intake/folder_actions.h"
 #include "daemon/orders/pulse.h"
 
