@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/files.h"
 #include "base/names.h"
-#include "base/storage/move_file.h"
 #include "daemon/jobs/waits.h"
 #include "delivery/progress_file.h"
 #include "model/files/job_folder_names.h"

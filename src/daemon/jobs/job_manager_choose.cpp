@@ -1,9 +1,9 @@
 // How the job manager finds the printer for a model that was dropped for any of them.
 #include <algorithm>
 
+#include "base/files.h"
 #include "base/json_values.h"
 #include "base/names.h"
-#include "base/storage/move_file.h"
 #include "daemon/jobs/choose_printer.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/settings/model_options.h"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/files.h"
 #include "base/names.h"
-#include "base/storage/move_file.h"
 #include "daemon/jobs/job_manager.h"
 #include "delivery/progress_file.h"
 

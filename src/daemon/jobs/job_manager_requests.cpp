@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "base/files.h"
 #include "base/names.h"
-#include "base/storage/move_file.h"
 #include "base/time/wall_clock.h"
 #include "daemon/jobs/job_manager.h"
 #include "daemon/jobs/job_refusals.h"
