@@ -44,7 +44,7 @@ void run(const Arguments& arguments) {
     for (const Warning& warning : job.warnings)
       fmt::print(stderr, "warning: {} ({})\n", printable(warning.text), warning.code);
   }
-  if (arguments.json) std::cout << json_text(all);
+  if (arguments.json) std::cout << report_text(all);
 }
 
 }  // namespace

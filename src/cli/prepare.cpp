@@ -100,7 +100,7 @@ void run(const Arguments& arguments, const CLI::App& verb) {
                   known);
   }
   if (arguments.json)
-    std::cout << json_text(job_json(job));
+    std::cout << report_text(job_json(job));
   else
     tell(job, arguments.out);
 }

@@ -94,8 +94,16 @@ void convert(ReadyProgram& program, const std::string& gcode, const Progress& pr
     program.estimate.time_s = seconds_of_x3g(program.bytes);
 }
 
+// A way of delivery that takes programs has a language for them (ways_test holds the tables to it).
+const ProgramLanguage& language_of(const Profile& profile) {
+  if (profile.language() == nullptr)
+    throw Error(Fault::kInternal, "The " + profile.name + " is sent no programs",
+                "Please report this as a bug.");
+  return *profile.language();
+}
+
 void take_gcode(ReadyProgram& program, std::string gcode, const Progress& progress) {
-  const ProgramLanguage& language = *program.profile.language();
+  const ProgramLanguage& language = language_of(program.profile);
   const bool converts = language.from_gpx;
   if (!converts) check_gcode(gcode);
   progress.report("checking", 0.3);
@@ -116,7 +124,7 @@ void take_x3g(ReadyProgram& program, std::string x3g) {
   check_x3g(x3g);
   program.estimate.source = EstimateSource::kMoves;
   program.estimate.time_s = seconds_of_x3g(x3g);
-  program.extension = program.profile.language()->extension;
+  program.extension = language_of(program.profile).extension;
   program.bytes = std::move(x3g);
 }
 

@@ -66,7 +66,14 @@ void send_tray(const fs::path& job_folder, int tray, const std::string& port,
     }
     listener(report);
   };
-  way.give({job_folder, profile, job.trays, tray_files, port, file, std::move(program),
+  way.give({job_folder,
+            profile,
+            job.trays,
+            tray_files,
+            port,
+            {},
+            file,
+            std::move(program),
             std::move(options)},
            begins, control);
 }
@@ -79,10 +86,11 @@ fs::path hand_over(const fs::path& job_folder, const fs::path& to, const std::st
   if (!way.hands_over)
     throw Error(Fault::kUsage, "The " + profile.name + " is sent its jobs over a cable",
                 "Leave --to away, and name its port with --port.");
-  const fs::path target = to / name;
   PrintControl control;
-  way.give({job_folder, profile, job.trays, tray_files, target.string()}, {}, control);
-  return target;
+  way.give(
+      {job_folder, profile, job.trays, tray_files, to.string(), name}, [](const PrintReport&) {},
+      control);
+  return to / name;
 }
 
 }  // namespace packmerger

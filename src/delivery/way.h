@@ -23,8 +23,9 @@ struct Delivery {
   const Profile& profile;         // that it was prepared with
   int trays;                      // that it has
   const std::string& tray_files;  // as hash_trays() (job_folder.h) told; empty: not known
-  // where it goes: an address (find_port.h), or the folder to make
+  // where it goes: an address (find_port.h), or a folder and the name of the one to make in it
   std::string to;
+  std::string name = {};
   // what a way that hands over has no use for
   fs::path file = {};        // what the printer is given
   std::string program = {};  // the file's bytes; empty where it is a document

@@ -1,5 +1,5 @@
-// The half-edge structure of a surface (OpenMesh), for the verbs that walk along edges or round a
-// point. Others read Mesh::triangles() and neighbours() and need not compile it.
+// The half-edge structure of a surface (OpenMesh), for the check that it is a 2-manifold and for
+// going round a point. Others read Mesh::triangles() and neighbours() and need not compile it.
 #pragma once
 
 #include <string>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/error.h"
 #include "model/half_edges.h"
 
 namespace packmerger {
@@ -35,6 +36,9 @@ Mesh::Mesh(std::vector<Vec3> points, Faces faces)
       faces_(std::make_shared<const Faces>(std::move(faces))) {}
 
 Mesh Mesh::with_points(std::vector<Vec3> points) const {
+  if (points.size() != n_points())
+    throw Error(Fault::kInternal, "A mesh was given another number of points",
+                "Please report this as a bug.");
   Mesh mesh;
   mesh.points_ = std::make_shared<const std::vector<Vec3>>(std::move(points));
   mesh.faces_ = faces_;

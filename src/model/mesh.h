@@ -20,7 +20,7 @@ struct TriangleSoup {
 
 // A 2-manifold: at most two triangles meet at an edge, turned alike, and one fan of them at a
 // point. Every point is some triangle's corner. Copies share what they hold, and copies that were
-// moved share their triangles. Const, so any thread may read it.
+// moved share their triangles. Const, so any thread may read it. Moved from: only assign to it.
 //
 // Everywhere but in the inside of a verb a Mesh is closed, and its normals point out of the matter;
 // it may have several components, and inner ones (cavities) are oriented towards the empty side.

@@ -46,6 +46,7 @@ bool lies_within(const Mesh& inner, const Mesh& outer) {
       const std::size_t triangle = open.back();
       open.pop_back();
       for (const int beside : inner.neighbours()[triangle]) {
+        if (beside < 0) continue;
         const auto next = static_cast<std::size_t>(beside);
         if (seen[next]) continue;
         seen[next] = true;

@@ -124,7 +124,7 @@ Json job_json(const Job& job) {
   return report;
 }
 
-std::string json_text(const Json& json) {
+std::string report_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

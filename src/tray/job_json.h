@@ -14,10 +14,10 @@ namespace packmerger {
 nlohmann::json printer_json(const Profile& profile);
 
 // The whole report. Number arrays and keys are those of docs/JOB_FOLDER. Bytes that are not UTF-8
-// in a file's name are replaced when it is dumped with json_text().
+// in a file's name are replaced when it is dumped with report_text().
 nlohmann::json job_json(const Job& job);
 
 // Indented by two, ending in a line end. Never throws for strings that are not UTF-8.
-std::string json_text(const nlohmann::json& json);
+std::string report_text(const nlohmann::json& json);
 
 }  // namespace packmerger

@@ -38,7 +38,7 @@ std::string program_report(const ReadyProgram& program) {
       {"parts", Json::array()},
       {"estimates", estimates_json(program)},
       {"warnings", warnings_json(program.warnings)}};
-  return json_text(report);
+  return report_text(report);
 }
 
 void write_program_folder(const ReadyProgram& program, const fs::path& out) {

@@ -148,7 +148,7 @@ void write_job_folder(const Job& job, const std::vector<TrayFiles>& trays, const
       [&] { write_file_whole(folder.path() / kAssemblyScene, assembly_glb(job)); },
       [&] { write_file_whole(folder.path() / kPageScene, page_scene(job)); },
       [&] { write_file_whole(folder.path() / kProfileFile, profile_toml(job.profile)); },
-      [&] { write_file_whole(folder.path() / kReportFile, json_text(job_json(job))); }};
+      [&] { write_file_whole(folder.path() / kReportFile, report_text(job_json(job))); }};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
     add_tray(all[i], number, folder.path(), writes);

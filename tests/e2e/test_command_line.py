@@ -69,7 +69,7 @@ class Usage(CommandLine):
         for err in (ender,
                     self.expect(2, "compare", self.sphere).err,
                     self.expect(2, "prepare", self.sphere, "--out", self.folder / "job").err):
-            self.assertIn("marlin, objet30, replicator, uprint", err)
+            self.assertIn(", ".join(sorted(path.stem for path in (program.SOURCE / "profiles").glob("*.toml"))), err)
 
     def test_what_is_missing_is_named(self):
         for spoken, verbs in ((["packmerger"], "prepare, compare, send"), (["packmerger", "jobs"], "list, show"),

@@ -219,7 +219,8 @@ void Cleaner::record() {
       gone_.erase(gone_.begin());
     }
     while (!unrecorded_.empty()) {
-      if (std::optional<JobRecord> job = store_.find(*unrecorded_.begin())) {
+      std::optional<JobRecord> job = store_.find(*unrecorded_.begin());
+      if (job && is_possible(*job, JobEventKind::kDelete)) {
         steps_.apply(*job, JobEventKind::kDelete);
         store_.save(*job);
       }

@@ -72,6 +72,10 @@ void act(JobRecord& job, JobAction action) {
     case JobAction::kRelease:
       job.held = false;
       return;
+    case JobAction::kReleaseToPrint:
+      job.at_once = job.held = false;
+      job.reason.clear();
+      return;
     case JobAction::kBeginTray:
       return begin_tray(job);
     case JobAction::kNextTray:

@@ -74,13 +74,14 @@ void check_printer(const fs::path& file, int line, PrinterConfig& printer) {
   // gluing parts of a plastic thread costs more than it saves, most often
   if (printer.abilities.technology == Technology::kFdm && !printer.options.variant)
     printer.options.variant = "cheapest";
+  const DeliveryWay& way = way_of(printer.abilities);
   try {
-    check_address(printer.port);
+    // a port where none may be is not to be corrected, it has to go
+    if (!way.hands_over) check_address(printer.port);
   } catch (const Error& error) {
     refuse(file, line, table + ": " + error.what() + ". " + error.hint());
   }
-  if (const auto fault =
-          way_of(printer.abilities).fault_of_settings(printer.port, printer.handoff_folder))
+  if (const auto fault = way.fault_of_settings(printer.port, printer.handoff_folder))
     refuse(file, line, table + " " + *fault);
 }
 

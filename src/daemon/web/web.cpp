@@ -64,7 +64,7 @@ Web::Web(const DaemonConfig& config, KeyRing& keys, WebQuestions& questions, Web
     : config_(config.web),
       uploads_(uploads_folder(config)),
       keys_(keys),
-      desk_(questions),
+      loop_(questions),
       events_(events),
       guard_(config.web.hosts, keys, config.web.trust_local.value_or(true)),
       address_(keys.empty() ? "127.0.0.1" : config.web.address) {
@@ -86,7 +86,7 @@ BodyPlan Web::plan(const HttpRequest& request) {
   if (refusal)
     body = route.target == WebTarget::kDoor ? in_plain_words(*refusal) : *refusal;
   else if (route.target == WebTarget::kDoor)
-    body = plan_at_door(request, desk_, room);
+    body = plan_at_door(request, loop_, room);
   else if (route.target == WebTarget::kUpload)
     body = room;
   if (auto* reply = std::get_if<HttpReply>(&body)) add_safe_headers(*reply);
@@ -119,7 +119,7 @@ HttpReply Web::routed(HttpRequest& request) {
       if (route.verb.starts_with("jobs.") && !route.id.empty())
         verb["id"] = number(route.id).value_or(0);
       if (route.verb.starts_with("printers.") && !route.id.empty()) verb["name"] = route.id;
-      return desk_.ask(json_text(verb));
+      return loop_.ask(json_text(verb));
     }
     case WebTarget::kUpload:
       return upload(request);
@@ -132,7 +132,7 @@ HttpReply Web::routed(HttpRequest& request) {
     case WebTarget::kEvents:
       return events(request);
     case WebTarget::kDoor:
-      return answer_at_door(request, desk_);
+      return answer_at_door(request, loop_);
     case WebTarget::kPage:
       return page(request);
     case WebTarget::kNone:
@@ -148,7 +148,7 @@ HttpReply Web::upload(HttpRequest& request) {
                      "curl -F printer=NAME -F file=@model.stl does it.");
   const UploadedFile& file = request.files.front();
   const auto at_once = request.form.find("print");
-  return desk_.take({.printer = printer->second,
+  return loop_.take({.printer = printer->second,
                      .name = file.name,
                      .file = file.path,
                      .at_once = at_once != request.form.end() && at_once->second == "true"});
@@ -157,11 +157,12 @@ HttpReply Web::upload(HttpRequest& request) {
 HttpReply Web::upload_rules() const {
   json endings = json::array();
   json formats = json::array();
-  for (const FileFormat& format : file_formats()) {
-    endings.push_back(format.ending);
-    if (std::find(formats.begin(), formats.end(), format.name) == formats.end())
-      formats.push_back(format.name);
-  }
+  for (const FileFormat& format : file_formats()) endings.push_back(format.ending);
+  for (const bool programs : {false, true})
+    for (const FileFormat& format : file_formats())
+      if (is_program(format.kind) == programs &&
+          std::find(formats.begin(), formats.end(), format.name) == formats.end())
+        formats.push_back(format.name);
   HttpReply reply;
   reply.body = json{{"most_bytes", config_.most_upload_bytes},
                     {"endings", std::move(endings)},
@@ -176,7 +177,7 @@ HttpReply Web::file_of_job(const std::string& id, const std::string& name) {
     return web_error(404, Fault::kNoInput, "A job has no such file",
                      "docs/JOB_FOLDER.md lists what a job folder holds.");
   const HttpReply shown =
-      desk_.ask(json{{"verb", "jobs.show"}, {"id", number(id).value_or(0)}}.dump());
+      loop_.ask(json{{"verb", "jobs.show"}, {"id", number(id).value_or(0)}}.dump());
   if (shown.status != 200) return shown;
   const json job = json::parse(shown.body);
   const std::string folder = job.value("folder", "");

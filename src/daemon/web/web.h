@@ -45,7 +45,7 @@ class Web {
   const WebConfig config_;  // as it was: the loop may read the settings again
   const std::filesystem::path uploads_;
   KeyRing& keys_;
-  LoopProxy desk_;
+  LoopProxy loop_;
   WebEvents& events_;
   WebGuard guard_;
   std::string address_;

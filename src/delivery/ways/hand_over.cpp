@@ -45,9 +45,9 @@ bool holds_same_report(const fs::path& folder, const fs::path& job_folder) {
 }
 
 void give(const Delivery& delivery, const PrintListener&, PrintControl&) {
-  const fs::path target = delivery.to;
+  const fs::path to = delivery.to;
+  const fs::path target = to / delivery.name;
   if (holds_same_report(target, delivery.folder)) return check_documents(target, delivery);
-  const fs::path to = target.parent_path();
   std::error_code ignored;
   if (!fs::is_directory(to, ignored))
     throw Error(Fault::kCannotWrite, to.string() + " is no folder that can be written to",

@@ -62,6 +62,7 @@ constexpr std::array kActionNames = std::to_array<std::string_view>({
     "approve by hand",
     "hold",
     "release",
+    "release to print",
     "begin the tray",
     "next tray",
     "note the cancel",

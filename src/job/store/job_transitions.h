@@ -85,6 +85,7 @@ enum class JobAction {
   kApproveByHand,  // no hold and no order of before any more
   kHold,
   kRelease,
+  kReleaseToPrint,  // nor is there an order of before any more
   kBeginTray,
   kNextTray,
   kNoteCancel,  // for the next daemon, should this one die
@@ -148,11 +149,11 @@ inline constexpr auto kJobTransitions = [] {
     {{kReady},                                 kApprovedBefore,    kApproved,   A::kApprove},
     {kUnsent,                                  kHold,              kStays,      A::kHold},
     {{kClaiming, kReceived, kPreparing},       kRelease,           kStays,      A::kRelease},
-    {{kApproved},                              kRelease,           kStays,      A::kApproveByHand},
+    {{kApproved},                              kRelease,           kStays,      A::kReleaseToPrint},
     {kUnsent,                                  kPutFirst,          kStays},
-    {{kReceived, kReady, kApproved},           kPrepareOtherwise,       kReceived,   A::kForgetPrepared},
+    {{kReceived, kReady, kApproved},           kPrepareOtherwise,  kReceived,   A::kForgetPrepared},
     {{kReady, kApproved},                      kReplace,           kCancelled,  A::kEnd},
-    {{kReceived, kPreparing, kReady, kApproved}, kCancel,            kCancelled,  A::kEnd},
+    {{kReceived, kPreparing, kReady, kApproved}, kCancel,          kCancelled,  A::kEnd},
     {{kSending},                               kCancel,            kStays,      A::kNoteCancel},
     {{kApproved},                              kTrayBegins,        kSending,    A::kBeginTray},
     {{kSending},                               kTrayNotBegun,      kApproved,   A::kForgetDeaths},

@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::array<FileFormat, 11> kFormats = {{
     {".stl", FileKind::kModel, "STL", FileEnd::kStl, "model/stl"},
-    {".obj", FileKind::kModel, "OBJ", FileEnd::kNotTold, "model/obj"},
+    {".obj", FileKind::kModel, "OBJ", FileEnd::kNotTold, ""},
     {".ply", FileKind::kModel, "PLY", FileEnd::kNotTold, ""},
     {".off", FileKind::kModel, "OFF", FileEnd::kNotTold, ""},
+    {".gcode.3mf", FileKind::kSliced, "G-code", FileEnd::kZip, "model/3mf"},
     {".3mf", FileKind::kModel, "3MF", FileEnd::kZip, "model/3mf"},
     {".gcode", FileKind::kGcode, "G-code", FileEnd::kNotTold, "text/x.gcode"},
-    {".gco", FileKind::kGcode, "G-code", FileEnd::kNotTold, "text/x.gcode"},
-    {".g", FileKind::kGcode, "G-code", FileEnd::kNotTold, "text/x.gcode"},
-    {".gcode.3mf", FileKind::kSliced, "G-code", FileEnd::kZip, "model/3mf"},
+    {".gco", FileKind::kGcode, "G-code", FileEnd::kNotTold, ""},
+    {".g", FileKind::kGcode, "G-code", FileEnd::kNotTold, ""},
     {".x3g", FileKind::kX3g, "x3g", FileEnd::kNotTold, ""},
     {".s3g", FileKind::kX3g, "x3g", FileEnd::kNotTold, ""},
 }};

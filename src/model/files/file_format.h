@@ -33,7 +33,7 @@ struct FileFormat {
   FileKind kind;
   std::string_view name;  // for people: "STL"
   FileEnd end;
-  std::string_view media_type;  // empty: none is registered
+  std::string_view media_type;  // empty: it is never given away
 };
 
 std::span<const FileFormat> file_formats();

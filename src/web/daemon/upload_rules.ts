@@ -16,6 +16,6 @@ export function forbids(file: { name: string; size: number }, rules: UploadRules
 }
 
 export function formatsInWords(rules: UploadRules | null): string {
-  if (rules === null) return 'model';
-  return `${rules.formats.slice(0, -1).join(', ')} or ${rules.formats.at(-1)}`;
+  const formats = rules?.formats ?? ['STL', 'OBJ', 'PLY', 'OFF', '3MF'];  // before the daemon told
+  return `${formats.slice(0, -1).join(', ')} or ${formats.at(-1)}`;
 }

@@ -44,6 +44,8 @@ TEST_F(ConfigTest, AddressesOnUsb) {
   const auto printer = [](const std::string& profile, const std::string& port) {
     return "[printer.m]\nprofile = \"" + profile + "\"\nport = \"" + port + "\"\n";
   };
+  EXPECT_THAT(refusal(printer("objet30", "usb:nonsense")), HasSubstr("takes no job by wire"))
+      << "such a port is not to be corrected, it has to go";
   EXPECT_EQ(refusal(printer("marlin", "usb:23c1:D314:A:1")), "accepted");
   EXPECT_THAT(refusal(printer("marlin", "usb:23c1")), HasSubstr("usb:VID:PID:SERIAL"));
   const std::string set = "set = [\"dialect=usb\"]\n";

@@ -14,10 +14,10 @@ namespace {
 constexpr double kNever_s = 1e6;
 constexpr int kPatience_ms = 60000;
 
-class FolderClerkTest : public testing::Test {
+class FolderWorkerTest : public testing::Test {
  protected:
-  ~FolderClerkTest() override {
-    desk_.orders.close();
+  ~FolderWorkerTest() override {
+    queue_.orders.close();
     thread_.join();
   }
 
@@ -36,25 +36,25 @@ class FolderClerkTest : public testing::Test {
 
   TemporaryFolder folder_;
   const fs::path watched_ = folder_.path() / "drop";
-  FolderQueue desk_;
+  FolderQueue queue_;
   Queue<Event> events_;
-  std::thread thread_{[this] { FolderWorker(watched_, desk_, events_).run(); }};
+  std::thread thread_{[this] { FolderWorker(watched_, queue_, events_).run(); }};
 };
 
-TEST_F(FolderClerkTest, TellsAnewOfEachWatch) {
+TEST_F(FolderWorkerTest, TellsAnewOfEachWatch) {
   std::ofstream(watched_) << "no folder";
-  desk_.orders.push(WatchOrder{"lab", {}, kNever_s});
+  queue_.orders.push(WatchOrder{"lab", {}, kNever_s});
   const FolderTold first = told();
   EXPECT_EQ(first.printer, "lab");
   EXPECT_EQ(first.folder, watched_);
   ASSERT_TRUE(first.trouble);
-  desk_.orders.push(WatchOrder{"lab", {}, kNever_s});  // as a reload does
+  queue_.orders.push(WatchOrder{"lab", {}, kNever_s});  // as a reload does
   EXPECT_TRUE(told().trouble) << "it lasts";
   fs::remove(watched_);
-  desk_.orders.push(WatchOrder{"lab", {}, kNever_s});
+  queue_.orders.push(WatchOrder{"lab", {}, kNever_s});
   EXPECT_FALSE(told().trouble) << "the trouble of the watch before is over";
-  desk_.orders.push(WatchOrder{});
-  desk_.orders.push(WatchOrder{"cellar", {}, kNever_s});
+  queue_.orders.push(WatchOrder{});
+  queue_.orders.push(WatchOrder{"cellar", {}, kNever_s});
   EXPECT_EQ(told().printer, "cellar") << "and he tells nobody of a folder that nobody watches";
 }
 

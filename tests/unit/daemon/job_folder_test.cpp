@@ -168,6 +168,9 @@ TEST(HandOver, PutsTheDocumentReportAndPictureWhole) {
   const fs::path to = folder.path() / "share";
   EXPECT_EQ(fault_of([&] { hand_over(folder.path() / "job", to, "bunny-1"); }),
             Fault::kCannotWrite);
+  EXPECT_EQ(fixtures::refusal_of([&] { hand_over(folder.path() / "job", to / "", "bunny-1"); }),
+            to.string() + "/ is no folder that can be written to")
+      << "named as it was given";
   fs::create_directory(to);
   const mode_t umask_before = ::umask(0077);
   const fs::path target = hand_over(folder.path() / "job", to, "bunny-1");

@@ -9,6 +9,18 @@
 namespace packmerger {
 namespace {
 
+// What is released was not approved by it: a later one like it would start without being asked for.
+TEST(JobSteps, ReleaseApprovesNothing) {
+  JobRecord job;
+  job.id = 1;
+  job.state = JobState::kApproved;
+  job.held = job.at_once = true;
+  job.reason = "the order to print it at once is an old one";
+  JobSteps().apply(job, JobEventKind::kRelease);
+  EXPECT_FALSE(job.held || job.at_once || job.approved);
+  EXPECT_EQ(job.reason, "");
+}
+
 using Rows = std::set<const JobTransition*>;
 
 // A shop in which everything happens, at random: files of all kinds come and go, people ask for

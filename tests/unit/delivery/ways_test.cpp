@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "base/error.h"
 #include "base/files.h"
 #include "delivery/way.h"
 #include "firmware_io/simulated/firmwares.h"
@@ -51,6 +52,17 @@ TEST(Ways, EveryDialectHasARowAndAWayOfItsOwn) {
   }
   EXPECT_EQ(names.size(), kDialects.size());
   EXPECT_EQ(ways.size(), kDialects.size());
+}
+
+// Whoever reads such a program asks for its language (delivery/ready_program).
+TEST(Ways, NoneTakesProgramsWithoutALanguage) {
+  Profile profile;
+  for (const DialectRow& row : kDialects) {
+    profile.dialect = row.dialect;
+    for (const FileKind kind : {FileKind::kGcode, FileKind::kX3g, FileKind::kSliced})
+      if (row.language == nullptr)
+        EXPECT_THROW(way_of(row.dialect).check_program(profile, kind), Error) << row.name;
+  }
 }
 
 TEST(Ways, ATableThatLacksADialectIsNoticed) {

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
+#include "base/error.h"
 #include "fixtures/fault_of.h"
 #include "fixtures/models.h"
 
@@ -57,10 +59,28 @@ TEST(Mesh, ABorderIsNoNeighbourAndNotClosed) {
   soup.triangles.pop_back();
   const Mesh open = manifold_mesh(soup);
   EXPECT_FALSE(open.is_closed());
+  const std::array<int, 3> missing = fixtures::cube(10).triangles.back();
   int borders = 0;
-  for (const auto& beside : open.neighbours())
-    borders += static_cast<int>(std::count(beside.begin(), beside.end(), -1));
+  for (int face = 0; face < static_cast<int>(open.n_triangles()); ++face)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = open.triangles()[face][k];
+      const int to = open.triangles()[face][(k + 1) % 3];
+      const int beside = open.neighbours()[face][k];
+      if (beside < 0) {
+        ++borders;  // the missing triangle has the edge the other way round
+        int there = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+          there += missing[i] == to && missing[(i + 1) % 3] == from;
+        EXPECT_EQ(there, 1);
+        continue;
+      }
+      const auto& back = open.neighbours()[beside];
+      EXPECT_EQ(std::count(back.begin(), back.end(), face), 1);
+    }
   EXPECT_EQ(borders, 3);
+  const Mesh whole = closed_mesh(fixtures::cube(10));
+  EXPECT_FALSE(united({&whole, &open}).is_closed()) << "closed where all are";
+  EXPECT_THROW(whole.with_points({Vec3::Zero()}), Error);
   EXPECT_THAT(refusal(soup), HasSubstr("it has holes"));
 }
 
@@ -68,6 +88,11 @@ TEST(Mesh, WhatIsNo2ManifoldIsRefused) {
   TriangleSoup doubled = fixtures::cube(10);
   doubled.triangles.push_back(doubled.triangles.front());
   EXPECT_THAT(refusal(doubled), HasSubstr("not a closed 2-manifold"));
+
+  TriangleSoup fin;  // three sheets on one edge
+  fin.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+  fin.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+  EXPECT_THAT(refusal(fin), HasSubstr("an edge has more than two sides"));
 
   TriangleSoup collapsed = fixtures::cube(10);
   collapsed.triangles[3][1] = collapsed.triangles[3][0];

@@ -175,7 +175,7 @@ TEST(KnownWays, AreReadBackAsTheyWereWritten) {
   job.resample_tolerance_mm = 0.3;
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "job.json";
-  write_file_whole(file, json_text(job_json(job)));
+  write_file_whole(file, report_text(job_json(job)));
   const std::optional<KnownWays> known = known_ways(folder.path());
   ASSERT_TRUE(known);
   EXPECT_EQ(compared_json(known->compared), compared_json(job.compared));
@@ -191,11 +191,11 @@ TEST(KnownWays, AreNoneWhereTheyCannotBeRead) {
   for (const char* key : {"compared", "segments", "estimates"}) {
     Json wrong = json;
     wrong[key] = {{"packed", 7}};
-    write_file_whole(folder.path() / "job.json", json_text(wrong));
+    write_file_whole(folder.path() / "job.json", report_text(wrong));
     EXPECT_FALSE(known_ways(folder.path())) << key;
   }
   json.erase("compared");  // as an earlier version wrote it
-  for (const std::string& text : {json_text(json), std::string("{"), std::string("[1]")}) {
+  for (const std::string& text : {report_text(json), std::string("{"), std::string("[1]")}) {
     write_file_whole(folder.path() / "job.json", text);
     EXPECT_FALSE(known_ways(folder.path())) << text;
   }
@@ -204,7 +204,7 @@ TEST(KnownWays, AreNoneWhereTheyCannotBeRead) {
 TEST(JobJson, NamesThatAreNotUtf8DoNotStopIt) {
   Job job = fixtures::sample_job();
   job.inputs[0].file = "caf\xe9.stl";
-  const Json again = Json::parse(json_text(job_json(job)));
+  const Json again = Json::parse(report_text(job_json(job)));
   EXPECT_EQ(again["inputs"][0]["file"], "caf\xef\xbf\xbd.stl");
 }
 

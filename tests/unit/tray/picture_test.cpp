@@ -80,7 +80,7 @@ TEST(Png, SurvivesReadingBack) {
   EXPECT_EQ(rgba, image.rgba);
 }
 
-// A segment that touches itself at a vertex cannot be held by a half-edge mesh as it is.
+// A segment that touches itself at a vertex is no 2-manifold as it is.
 TEST(CutPicture, DrawsSegmentsHoweverTheyTouchThemselves) {
   ColouredMesh ball;
   ball.surface = closed_mesh(fixtures::sphere(20, 3));
@@ -89,9 +89,7 @@ TEST(CutPicture, DrawsSegmentsHoweverTheyTouchThemselves) {
   ColouredMesh halves = ball;
   for (std::size_t i = 0; i < faces; ++i)
     halves.segment_of_face[i] = halves.surface.corners(i)[0].x() < 0 ? 0 : 1;
-  testing::internal::CaptureStderr();
   const Image image = cut_picture(ball, halves);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "OpenMesh dropped faces";
   for (const int segment : {0, 1, 2}) EXPECT_GT(pixels_of(image, part_colour(segment)), 5000);
 }
 
