@@ -59,9 +59,9 @@ TEST(Ways, NoneTakesProgramsWithoutALanguage) {
   Profile profile;
   for (const DialectRow& row : kDialects) {
     profile.dialect = row.dialect;
+    if (row.language != nullptr) continue;
     for (const FileKind kind : {FileKind::kGcode, FileKind::kX3g, FileKind::kSliced})
-      if (row.language == nullptr)
-        EXPECT_THROW(way_of(row.dialect).check_program(profile, kind), Error) << row.name;
+      EXPECT_THROW(way_of(row.dialect).check_program(profile, kind), Error) << row.name;
   }
 }
 
