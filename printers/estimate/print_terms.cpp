@@ -97,6 +97,26 @@ PrintTerms print_terms(const Profile& profile, const std::vector<Tray>& trays,
   return terms;
 }
 
+PrintTerms predicted_terms(const Profile& profile, const TrayMeasure& tray) {
+  PrintTerms terms;
+  terms.by = estimator_of(profile);
+  terms.layers = layer_count(tray.size_mm.z(), profile.layer_mm);
+  terms.model_mm3 = tray.material_mm3;
+  terms.support_mm3 = terms.held_mm3 = tray.support_mm3;
+  if (terms.by == Estimator::kPolyjet)
+    add_passes(terms, profile.polyjet, terms.layers, tray.size_mm.x(), tray.size_mm.y());
+  if (terms.by == Estimator::kPath) {
+    const FdmSettings& settings = profile.fdm;
+    const double path_mm = tray.material_mm3 / bead(settings, profile.layer_mm).area_mm2;
+    const double beads_s = (1 + settings.overhead_factor) * path_mm / settings.speed_mm_s;
+    const double slowest_s =
+        std::min(terms.layers * settings.min_layer_s, path_mm / settings.min_speed_mm_s);
+    terms.path_s = std::max(beads_s, slowest_s) +
+                   support_time_s(settings, profile.layer_mm, tray.support_mm3, 0);
+  }
+  return terms;
+}
+
 void require_constants(const Profile& profile) {
   require_positive(profile, profile.layer_mm, "layer_mm");
   switch (estimator_of(profile)) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "model/packing.h"
 #include "model/printer.h"
 #include "model/tray.h"
 
@@ -51,6 +52,12 @@ BothTerms both_terms(const Profile& profile, const std::vector<Tray>& trays,
 // Throws what both_terms() and slice() throw.
 PrintTerms print_terms(const Profile& profile, const std::vector<Tray>& trays,
                        const Progress& progress);
+
+// Of a tray whose contents' figures alone are known, as the packer's search sees it.
+// Every layer is taken to reach as far as the whole contents. Along a tool path the surface is not
+// known here, so thin walls are assumed: solid, all beads at full speed. It is the same for every
+// packing of the same parts, except where layers get too short.
+PrintTerms predicted_terms(const Profile& profile, const TrayMeasure& tray);
 
 // What both_terms() asks of the profile: "Profile uprint: fdm.deposition_cm3_h must be positive …".
 void require_constants(const Profile& profile);

@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "fixtures/profiles.h"
 #include "printers/estimate/estimate.h"
+#include "printers/estimate/linear_estimate.h"
+#include "printers/estimate/print_terms.h"
 #include "shapes.h"
 
 namespace packmerger {
@@ -45,6 +47,23 @@ TEST(PackingCost, PolyjetMoneyByHand) {
   const double hours = (60 + 20 * 7.0) / 3600;
   EXPECT_NEAR(cost.evaluate(measure(Vec3(10, 20, 10), 400, 1000, 3)),
               hours * 6 + 1.8 * 0.1 + 0.8 * 0.2 + (2 * 2 + 10) / 60.0 * 30, 1e-9);
+}
+
+// What an estimate counts and the search does not know would be packed for nothing.
+TEST(PackingCost, TheSearchKnowsEveryFigureOfAnEstimate) {
+  Tray tray;
+  tray.parts = {printed::box(Vec3(0, 0, 5), Vec3(20, 30, 15))};
+  for (const Profile& profile :
+       {fixtures::plain_polyjet(), fixtures::plain_deposition(), fixtures::plain_toolpath()}) {
+    const PrintTerms exact = both_terms(profile, {tray}, Progress()).straight;
+    const PrintTerms known = predicted_terms(profile, measure(Vec3(20, 30, 15), 3000, 6000, 1));
+    const LinearEstimate& sums = linear_estimate(exact.by);
+    for (const auto& terms : {sums.time_s, sums.model_mm3, sums.support_g})
+      for (const LinearTerm& term : terms) {
+        if (term.amount(profile, exact) <= 0) continue;
+        EXPECT_GT(term.amount(profile, known), 0) << term.key;
+      }
+  }
 }
 
 TEST(PackingCost, DepositionAgreesWithTheEstimate) {
