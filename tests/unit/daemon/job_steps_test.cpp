@@ -249,6 +249,9 @@ class AnyLife {
         return job_manager.prepare(id, "packed"), void();
       case 5:
         return job_manager.remove(id), void();
+      case 6:  // held and released: by chance it seldom meets a job that is approved
+        job_manager.hold(id);
+        return job_manager.approve(id), void();
       default:
         return job_manager.approve(id), void();
     }
