@@ -299,7 +299,7 @@ constexpr JobEventKind kElsewhere[] = {JobEventKind::kBroken, JobEventKind::kDel
 TEST(JobSteps, EveryRowOfTheTableIsReached) {
   std::set<std::string_view> left;
   Rows reached;
-  for (std::uint64_t seed = 0; seed == 0 || (seed < 200 && !left.empty()); ++seed) {
+  for (std::uint64_t seed = 0; seed == 0 || (seed < 500 && !left.empty()); ++seed) {
     AnyLife life(seed);
     life.run(60);
     reached.insert(life.rows().begin(), life.rows().end());
