@@ -20,7 +20,7 @@ case $preset in
   *) echo "usage: ./test.sh [release|debug|thread]" >&2; exit 2 ;;
 esac
 # Sanitizers make code five to ten times slower; the generated models cover the same code as the real ones.
-[ "$preset" = release ] || export PACKMERGER_MODELS=/nonexistent RC_PARAMS="max_success=20"
+[ "$preset" = release ] || export PACKMERGER_MODELS=/nonexistent RC_PARAMS="max_success=20" PACKMERGER_HEAPS=10
 cmake --preset "$preset" -DPACKMERGER_TESTS=ON >/dev/null
 cmake --build "$folder" --target "${targets[@]}"
 report=$folder/ctest.txt
