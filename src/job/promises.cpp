@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "model/stl.h"
-#include "pack/exact_gap.h"
-#include "pack/exact_removal.h"
+#include "pack/exact/exact_gap.h"
+#include "pack/exact/exact_removal.h"
 
 namespace packmerger {
 namespace {

@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
-#include "pack/exact_figures.h"
-#include "pack/rearrange.h"
-#include "pack/refine.h"
-#include "pack/search.h"
-#include "pack/settle.h"
+#include "pack/anywhere/rearrange.h"
+#include "pack/exact/exact_figures.h"
+#include "pack/exact/settle.h"
+#include "pack/search/refine.h"
+#include "pack/search/search.h"
 
 namespace packmerger {
 namespace {

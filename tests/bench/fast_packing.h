@@ -1,11 +1,11 @@
-// One packing by the packer's own placement (src/pack/place.h) on the reference's maps, so that
-// both can be compared on the same ground.
+// One packing by the packer's own placement (src/pack/drop/place.h) on the reference's maps, so
+// that both can be compared on the same ground.
 #pragma once
 
 #include <vector>
 
 #include "bench/reference_packing.h"
-#include "pack/place.h"
+#include "pack/drop/place.h"
 
 namespace packmerger::bench {
 

@@ -14,8 +14,8 @@
 #include "bench/bench.h"
 #include "bench/kernels.h"
 #include "fixtures/z_buffer.h"
-#include "pack/depth_map.h"
-#include "pack/fall.h"
+#include "pack/drop/fall.h"
+#include "pack/maps/depth_map.h"
 #include "unit/pack/shapes.h"
 
 namespace packmerger::bench {

@@ -4,7 +4,7 @@
 #include "bench/bench.h"
 #include "bench/stopwatch.h"
 #include "bench/told.h"
-#include "pack/exact_figures.h"
+#include "pack/exact/exact_figures.h"
 #include "pack/pack.h"
 #include "unit/pack/shapes.h"
 

@@ -23,7 +23,7 @@
 #include "bench/told.h"
 #include "model/printer.h"
 #include "pack/pack.h"
-#include "pack/search.h"
+#include "pack/search/search.h"
 
 namespace packmerger::bench {
 namespace {

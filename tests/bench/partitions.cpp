@@ -13,8 +13,8 @@
 #include "bench/told.h"
 #include "job/divide.h"
 #include "model/printer.h"
-#include "pack/columns.h"
-#include "pack/ways_up.h"
+#include "pack/maps/columns.h"
+#include "pack/maps/ways_up.h"
 #include "shape/cut/cut_plans.h"
 #include "shape/divide/adjacency.h"
 #include "shape/divide/part_surface.h"
@@ -46,7 +46,7 @@ constexpr double kFine_mm = 0.4;
 
 double support_cm3(const Mesh& surface, const Vec3& up, double support_angle, double step_mm) {
   Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond::FromTwoVectors(up, Vec3::UnitZ()).toRotationMatrix();
+  pose.linear() = turn_between(up, Vec3::UnitZ());
   const Mesh standing = transformed(surface, pose);
   const double lowest = bounding_box(standing).min().z();
   const ColumnSupport support = column_support({standing}, step_mm, support_angle, lowest);

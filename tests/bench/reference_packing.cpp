@@ -5,9 +5,9 @@
 #include <limits>
 #include <tuple>
 
-#include "pack/columns.h"
-#include "pack/rotations.h"
-#include "pack/ways_up.h"
+#include "pack/maps/columns.h"
+#include "pack/maps/rotations.h"
+#include "pack/maps/ways_up.h"
 
 namespace packmerger::bench {
 namespace {

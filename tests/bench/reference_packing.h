@@ -10,7 +10,7 @@
 #include "bench/order.h"
 #include "fixtures/z_buffer.h"
 #include "model/packing.h"
-#include "pack/merge.h"
+#include "pack/maps/merge.h"
 
 namespace packmerger::bench {
 

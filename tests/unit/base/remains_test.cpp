@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "base/error.h"
 #include "base/files.h"
 #include "base/process/end_at_once.h"
 #include "base/process/process.h"
@@ -32,9 +33,15 @@ TEST(Remains, GoWithTheProgramWhateverItIsDoing) {
     ProcessSpec spec;
     spec.argv = {"sh", "-c", "trap '' TERM; echo $$ > " + pid_file.string() + "; sleep 600"};
     const ChildProcess child(spec);
-    std::thread([&] {
-      for (int i = 0;; ++i) write_file_whole(folder.path() / std::to_string(i), "busy");
-    }).detach();
+    std::thread(
+        [&] {  // its folder vanishes under it: it must neither save that nor end the program
+          for (int i = 0;; ++i) try {
+              write_file_whole(folder.path() / std::to_string(i), "busy");
+            } catch (const Error&) {
+              std::this_thread::yield();
+            }
+        })
+        .detach();
     while (!fs::exists(pid_file) || fs::file_size(pid_file) == 0) std::this_thread::yield();
     end_without_remains(130);
   };

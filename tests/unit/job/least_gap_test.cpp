@@ -10,7 +10,7 @@
 #include "fixtures/models.h"
 #include "job/prepare.h"
 #include "model/stl.h"
-#include "pack/exact_gap.h"
+#include "pack/exact/exact_gap.h"
 #include "shape/read/read_model.h"
 #include "shape/read/soup.h"
 

@@ -16,7 +16,7 @@
 #include "job/prepare.h"
 #include "job/promises.h"
 #include "model/stl.h"
-#include "pack/exact_gap.h"
+#include "pack/exact/exact_gap.h"
 
 namespace packmerger {
 namespace {

@@ -7,9 +7,9 @@
 #include <rapidcheck/gtest.h>
 
 #include "base/parallel.h"
-#include "pack/disassembly_order.h"
-#include "pack/escape_path.h"
-#include "pack/exact_gap.h"
+#include "pack/anywhere/disassembly_order.h"
+#include "pack/anywhere/escape_path.h"
+#include "pack/exact/exact_gap.h"
 #include "pack/pack.h"
 #include "unit/pack/check.h"
 #include "unit/pack/problems.h"

@@ -1,5 +1,5 @@
 // The packer's depth maps, against exact clipping, against columns and against OSMesa.
-#include "pack/depth_map.h"
+#include "pack/maps/depth_map.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include "base/random.h"
 #include "fixtures/z_buffer.h"
 #include "model/sentinel_heights.h"
-#include "pack/columns.h"
-#include "pack/rotations.h"
+#include "pack/maps/columns.h"
+#include "pack/maps/rotations.h"
 #include "unit/pack/shapes.h"
 
 namespace packmerger {

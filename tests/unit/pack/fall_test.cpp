@@ -1,5 +1,5 @@
 // The placement kernel against its formula, on every kind of vectors that this processor has.
-#include "pack/fall.h"
+#include "pack/drop/fall.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "pack/exact_gap.h"
+#include "pack/exact/exact_gap.h"
 #include "unit/pack/check.h"
 #include "unit/pack/problems.h"
 

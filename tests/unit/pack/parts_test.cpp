@@ -9,12 +9,12 @@
 
 #include "base/random.h"
 #include "bench/order.h"
-#include "pack/columns.h"
-#include "pack/exact_gap.h"
-#include "pack/merge.h"
-#include "pack/moves.h"
-#include "pack/rotations.h"
-#include "pack/search.h"
+#include "pack/exact/exact_gap.h"
+#include "pack/maps/columns.h"
+#include "pack/maps/merge.h"
+#include "pack/maps/rotations.h"
+#include "pack/search/moves.h"
+#include "pack/search/search.h"
 #include "unit/pack/check.h"
 #include "unit/pack/problems.h"
 
@@ -62,6 +62,17 @@ struct OnePart {
   PartMaker maker;
   const Part& part;
 };
+
+TEST(Rotations, BetweenDirectionsAreRigidNearOppositeOnesToo) {
+  for (double sine = 1; sine > 1e-9; sine /= 3)
+    for (const double cosine : {-std::sqrt(1 - sine * sine), std::sqrt(1 - sine * sine)}) {
+      const Vec3 from = 7 * Vec3(0.6 * sine, -0.8 * sine, cosine);
+      const Mat3 turn = turn_between(from, Vec3::UnitZ());
+      EXPECT_LT((turn * turn.transpose() - Mat3::Identity()).norm(), 1e-14) << sine;
+      EXPECT_NEAR(turn.determinant(), 1, 1e-14) << sine;
+      EXPECT_LT((turn * from - 7 * Vec3::UnitZ()).norm(), 1e-5) << sine;
+    }
+}
 
 TEST(Different, ABrickLiesInSixWaysAndACubeInOne) {
   for (const bool bounds : {true, false}) {

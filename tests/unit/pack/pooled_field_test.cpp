@@ -1,4 +1,4 @@
-#include "pack/pooled_field.h"
+#include "pack/drop/pooled_field.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "pack/fall.h"
+#include "pack/drop/fall.h"
 
 namespace packmerger {
 namespace {

@@ -1,0 +1,337 @@
+#include "pack/maps/depth_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "model/sentinel_heights.h"
+#include "pack/maps/columns.h"
+
+namespace packmerger {
+namespace {
+
+// In cells: what reaches less far into a cell than this does not count as being in it, so that a
+// box on the grid keeps to its cells.
+constexpr double kCellTolerance = 1e-7;
+
+std::size_t cells(const DepthMaps& maps) {
+  return static_cast<std::size_t>(maps.width) * static_cast<std::size_t>(maps.height);
+}
+
+std::size_t at(const DepthMaps& maps, int column, int row) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(maps.width) +
+         static_cast<std::size_t>(column);
+}
+
+void allocate(DepthMaps& maps) {
+  maps.low.assign(cells(maps), kNothingAbove);
+  maps.top.assign(cells(maps), kNothingBelow);
+  maps.bottom.assign(cells(maps), kNothingAbove);
+  maps.roof.assign(cells(maps), kNothingBelow);
+  maps.hangs.assign(cells(maps), 0);
+}
+
+DepthMaps empty_maps_around(const Mesh& surface, double grid) {
+  DepthMaps maps;
+  for (const Vec3& point : surface.points()) maps.box.extend(point);
+  const Vec3 low = maps.box.min() / grid;
+  const Vec3 high = maps.box.max() / grid;
+  maps.x0 = static_cast<int>(std::floor(low.x() + kCellTolerance));
+  maps.y0 = static_cast<int>(std::floor(low.y() + kCellTolerance));
+  maps.width = std::max(1, static_cast<int>(std::ceil(high.x() - kCellTolerance)) - maps.x0);
+  maps.height = std::max(1, static_cast<int>(std::ceil(high.y() - kCellTolerance)) - maps.y0);
+  allocate(maps);
+  return maps;
+}
+
+// A point of the rotated frame: x and y in cells from the maps' corner, so never below 0 by more
+// than rounding and truncation is the floor; z in mm.
+struct CellPoint {
+  double x;
+  double y;
+  double z;
+};
+
+std::vector<CellPoint> in_cells(const std::vector<Vec3>& points, double grid,
+                                const DepthMaps& maps) {
+  std::vector<CellPoint> result;
+  result.reserve(points.size());
+  const double scale = 1 / grid;
+  for (const Vec3& point : points)
+    result.push_back({point.x() * scale - maps.x0, point.y() * scale - maps.y0, point.z()});
+  return result;
+}
+
+// The corners of a triangle from low to high along one axis. Where a side lies is computed from its
+// lower end whatever triangle it belongs to, so that neighbours meet without a gap.
+template <double CellPoint::*kAlong, double CellPoint::*kAcross>
+struct SortedTriangle {
+  struct Place {
+    double across;
+    double z;
+  };
+
+  SortedTriangle(const CellPoint& p, const CellPoint& q, const CellPoint& r) {
+    // Which corner is which is as good as random: chosen without branches.
+    const CellPoint* low = q.*kAlong < p.*kAlong ? &q : &p;
+    const CellPoint* high = q.*kAlong < p.*kAlong ? &p : &q;
+    const CellPoint* upper = r.*kAlong < high->*kAlong ? &r : high;
+    last = r.*kAlong < high->*kAlong ? high : &r;
+    first = upper->*kAlong < low->*kAlong ? upper : low;
+    middle = upper->*kAlong < low->*kAlong ? low : upper;
+  }
+
+  // Where the line at `along` meets a side that it must pass strictly above `low`.
+  static Place on_side(const CellPoint& low, const CellPoint& high, double along) {
+    const double t = (along - low.*kAlong) / (high.*kAlong - low.*kAlong);
+    return {low.*kAcross + t * (high.*kAcross - low.*kAcross), low.z + t * (high.z - low.z)};
+  }
+  Place long_side(double along) const { return on_side(*first, *last, along); }
+  Place short_sides(double along) const {
+    const bool lower = along <= middle->*kAlong;
+    return on_side(lower ? *first : *middle, lower ? *middle : *last, along);
+  }
+
+  const CellPoint* first;
+  const CellPoint* middle;
+  const CellPoint* last;
+};
+
+// The cells along one axis that a triangle reaches into; none where it lies in a line of the grid:
+// what it closes there is entered by its neighbours.
+struct CellRange {
+  int first;
+  int last;
+
+  CellRange(double low, double high, int cells)
+      : first(static_cast<int>(low + kCellTolerance)),
+        last(std::min(static_cast<int>(high - kCellTolerance), cells - 1)) {}
+  int holding(double where) const { return std::clamp(static_cast<int>(where), first, last); }
+};
+
+class Rasterizer {
+ public:
+  Rasterizer(DepthMaps& maps, double grid, double normal_limit)
+      : maps_(maps), grid_(grid), normal_limit_(normal_limit) {}
+
+  // Into `low` and `top`.
+  void enter_extent(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    const CellRange columns(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), maps_.width);
+    const CellRange rows(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), maps_.height);
+    if (columns.last < columns.first || rows.last < rows.first) return;
+    if (columns.first == columns.last && rows.first == rows.last) {
+      enter_bounds(at(maps_, columns.first, rows.first), std::min({a.z, b.z, c.z}),
+                   std::max({a.z, b.z, c.z}));
+      return;
+    }
+    for (const CellPoint* corner : {&a, &b, &c})
+      enter_bounds(at(maps_, columns.holding(corner->x), rows.holding(corner->y)), corner->z,
+                   corner->z);
+    enter_lines<&CellPoint::x, &CellPoint::y>(a, b, c, columns, rows, 1, maps_.width);
+    enter_lines<&CellPoint::y, &CellPoint::x>(a, b, c, rows, columns, maps_.width, 1);
+  }
+
+  // Into `bottom`, `roof` and `hangs`.
+  void enter_centres(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    if (centres_up_to(std::min({a.x, b.x, c.x})) == centres_up_to(std::max({a.x, b.x, c.x})) ||
+        centres_up_to(std::min({a.y, b.y, c.y})) == centres_up_to(std::max({a.y, b.y, c.y})))
+      return;
+    enter_rows(a, b, c);
+  }
+
+ private:
+  // The number of cells whose centres lie at or below `where`: of a triangle's two sides one owns
+  // the centres exactly on it.
+  static int centres_up_to(double where) {
+    const int cell = static_cast<int>(where);
+    return where - cell >= 0.5 ? cell + 1 : cell;  // exact, unlike rounding where + 0.5
+  }
+
+  void enter_bounds(std::size_t cell, double low, double high) {
+    maps_.low[cell] = std::min(maps_.low[cell], static_cast<float>(low));
+    maps_.top[cell] = std::max(maps_.top[cell], static_cast<float>(high));
+  }
+
+  // On a cell's part of a facet, a height is extreme at the facet's corners and where the facet
+  // crosses the cell's sides. Enters the crossings with the grid lines between cells `along` into
+  // the cells on both sides of each; step and side_step lead to the next cell along and across.
+  template <double CellPoint::*kAlong, double CellPoint::*kAcross>
+  void enter_lines(const CellPoint& a, const CellPoint& b, const CellPoint& c,
+                   const CellRange& along, const CellRange& across, int step, int side_step) {
+    if (along.first == along.last) return;
+    const SortedTriangle<kAlong, kAcross> sorted(a, b, c);
+    for (int line = along.first + 1; line <= along.last; ++line) {
+      const auto one = sorted.long_side(line);
+      const auto other = sorted.short_sides(line);
+      const bool turned = other.across < one.across;
+      const auto from = turned ? other : one;
+      const auto to = turned ? one : other;
+      const int last = across.holding(to.across);
+      int side = across.holding(from.across);
+      std::size_t cell = static_cast<std::size_t>(line * step + side * side_step);
+      double z = from.z;
+      const double slope = side < last ? (to.z - from.z) / (to.across - from.across) : 0;
+      for (; side <= last; ++side, cell += static_cast<std::size_t>(side_step)) {
+        const double next = side == last ? to.z : from.z + slope * (side + 1 - from.across);
+        const double low = std::min(z, next);
+        const double high = std::max(z, next);
+        enter_bounds(cell, low, high);
+        enter_bounds(cell - static_cast<std::size_t>(step), low, high);
+        z = next;
+      }
+    }
+  }
+
+  void enter_rows(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    const Vec3 normal =
+        Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
+    if (normal.z() == 0) return;
+    // Steep facets are steeper still after rounding, but their heights remain theirs.
+    const double low = std::min({a.z, b.z, c.z});
+    const double high = std::max({a.z, b.z, c.z});
+    const double slope_x = -normal.x() / normal.z();
+    const double slope_y = -normal.y() / normal.z();
+    const auto hangs = [&] {
+      const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
+      return static_cast<std::uint8_t>(in_mm.z() < normal_limit_ * in_mm.norm() ? 1 : 0);
+    };
+    const SortedTriangle<&CellPoint::y, &CellPoint::x> sorted(a, b, c);
+    const int end = centres_up_to(sorted.last->y);
+    for (int row = centres_up_to(sorted.first->y); row < end; ++row) {
+      const double y = row + 0.5;
+      const double left = sorted.long_side(y).across;
+      const double right = sorted.short_sides(y).across;
+      const int last = centres_up_to(std::max(left, right));
+      for (int column = centres_up_to(std::min(left, right)); column < last; ++column) {
+        const double z = a.z + slope_x * (column + 0.5 - a.x) + slope_y * (y - a.y);
+        enter_centre(at(maps_, column, row), static_cast<float>(std::clamp(z, low, high)), hangs);
+      }
+    }
+  }
+
+  // hangs() is asked for the lowest only.
+  template <typename Hangs>
+  void enter_centre(std::size_t cell, float z, const Hangs& hangs) {
+    maps_.roof[cell] = std::max(maps_.roof[cell], z);
+    if (z > maps_.bottom[cell]) return;
+    maps_.hangs[cell] = z < maps_.bottom[cell] ? hangs() : maps_.hangs[cell] | hangs();
+    maps_.bottom[cell] = z;
+  }
+
+  DepthMaps& maps_;
+  double grid_;
+  double normal_limit_;
+};
+
+template <bool kExtents>
+DepthMaps drawn(const Mesh& surface, double grid_mm, double support_angle) {
+  DepthMaps maps = empty_maps_around(surface, grid_mm);
+  const std::vector<CellPoint> points = in_cells(surface.points(), grid_mm, maps);
+  Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
+  for (const auto& triangle : surface.triangles()) {
+    const CellPoint& a = points[static_cast<std::size_t>(triangle[0])];
+    const CellPoint& b = points[static_cast<std::size_t>(triangle[1])];
+    const CellPoint& c = points[static_cast<std::size_t>(triangle[2])];
+    if constexpr (kExtents) rasterizer.enter_extent(a, b, c);
+    rasterizer.enter_centres(a, b, c);
+  }
+  return maps;
+}
+
+DepthMaps once_turned(const DepthMaps& maps) {
+  DepthMaps turned;
+  turned.x0 = -(maps.y0 + maps.height);
+  turned.y0 = maps.x0;
+  turned.width = maps.height;
+  turned.height = maps.width;
+  turned.box.extend(Vec3(-maps.box.max().y(), maps.box.min().x(), maps.box.min().z()));
+  turned.box.extend(Vec3(-maps.box.min().y(), maps.box.max().x(), maps.box.max().z()));
+  allocate(turned);
+  for (int row = 0; row < maps.height; ++row)
+    for (int column = 0; column < maps.width; ++column) {
+      const std::size_t from = at(maps, column, row);
+      const std::size_t to = at(turned, maps.height - 1 - row, column);
+      turned.low[to] = maps.low[from];
+      turned.top[to] = maps.top[from];
+      turned.bottom[to] = maps.bottom[from];
+      turned.roof[to] = maps.roof[from];
+      turned.hangs[to] = maps.hangs[from];
+    }
+  return turned;
+}
+
+}  // namespace
+
+DepthMaps draw_depth_maps(const Mesh& surface, double grid_mm, double support_angle) {
+  return drawn<true>(surface, grid_mm, support_angle);
+}
+
+DepthMaps draw_centre_maps(const Mesh& surface, double grid_mm, double support_angle) {
+  return drawn<false>(surface, grid_mm, support_angle);
+}
+
+DepthMaps draw_sampled_maps(const Mesh& surface, double grid_mm, double support_angle) {
+  const DepthMaps fine = draw_centre_maps(surface, grid_mm / 2, support_angle);
+  const auto half = [](int cells) { return cells >= 0 ? cells / 2 : (cells - 1) / 2; };
+  DepthMaps maps;
+  maps.box = fine.box;
+  maps.x0 = half(fine.x0);
+  maps.y0 = half(fine.y0);
+  maps.width = half(fine.x0 + fine.width - 1) - maps.x0 + 1;
+  maps.height = half(fine.y0 + fine.height - 1) - maps.y0 + 1;
+  allocate(maps);
+  for (int row = 0; row < fine.height; ++row)
+    for (int column = 0; column < fine.width; ++column) {
+      const int x = fine.x0 + column;
+      const int y = fine.y0 + row;
+      const std::size_t from = at(fine, column, row);
+      const std::size_t to = at(maps, half(x) - maps.x0, half(y) - maps.y0);
+      maps.low[to] = std::min(maps.low[to], fine.bottom[from]);
+      maps.top[to] = std::max(maps.top[to], fine.roof[from]);
+      if ((x & 1) != 0 || (y & 1) != 0) continue;
+      maps.bottom[to] = fine.bottom[from];
+      maps.roof[to] = fine.roof[from];
+      maps.hangs[to] = fine.hangs[from];
+    }
+  return maps;
+}
+
+DepthMaps quarter_turned(const DepthMaps& maps, int quarters) {
+  DepthMaps turned = maps;
+  for (int i = 0; i < quarters; ++i) turned = once_turned(turned);
+  return turned;
+}
+
+DepthMaps united_maps(const std::vector<const DepthMaps*>& members) {
+  DepthMaps all;
+  int x1 = members.front()->x0;
+  int y1 = members.front()->y0;
+  all.x0 = x1;
+  all.y0 = y1;
+  for (const DepthMaps* member : members) {
+    all.x0 = std::min(all.x0, member->x0);
+    all.y0 = std::min(all.y0, member->y0);
+    x1 = std::max(x1, member->x0 + member->width);
+    y1 = std::max(y1, member->y0 + member->height);
+    all.box.extend(member->box);
+  }
+  all.width = x1 - all.x0;
+  all.height = y1 - all.y0;
+  allocate(all);
+  for (const DepthMaps* member : members)
+    for (int row = 0; row < member->height; ++row)
+      for (int column = 0; column < member->width; ++column) {
+        const std::size_t from = at(*member, column, row);
+        const std::size_t to = at(all, column + member->x0 - all.x0, row + member->y0 - all.y0);
+        all.low[to] = std::min(all.low[to], member->low[from]);
+        all.top[to] = std::max(all.top[to], member->top[from]);
+        all.roof[to] = std::max(all.roof[to], member->roof[from]);
+        if (member->bottom[from] < all.bottom[to]) {
+          all.bottom[to] = member->bottom[from];
+          all.hangs[to] = member->hangs[from];
+        }
+      }
+  return all;
+}
+
+}  // namespace packmerger
