@@ -142,10 +142,10 @@ TEST(Hollow, ChambersWithANarrowWayOutAreNoMatter) {
 
 TEST(Hollow, TheWallAroundAChamberWithANarrowWayOutIsHollowed) {
   Warnings warnings;
-  const Shell shell = hollowed(drained_box(60, 12, 1), warnings);
+  const Shell shell = hollowed(drained_box(34, 10, 1), warnings);
   expect_good_cavities(shell, 3);
   ASSERT_EQ(shell.cavities.size(), 1u);
-  const double expected = 54 * 54 * 54 - 42 * 42 * 42;
+  const double expected = 28 * 28 * 28 - 20 * 20 * 20;
   EXPECT_NEAR(-volume_mm3(shell.cavities[0]), expected, 0.03 * expected);
 }
 
@@ -218,7 +218,7 @@ TEST(Hollow, WhatIsEnclosedTwiceStaysSolid) {
 }
 
 TEST(Hollow, SameBytesOnOneAndTwoThreads) {
-  const TriangleSoup model = fixtures::blob(60, 4);
+  const TriangleSoup model = fixtures::blob(36, 3);
   const auto with_threads = [&](std::size_t threads) {
     const ThreadLimit limit(threads);
     Warnings warnings;

@@ -121,9 +121,9 @@ void expect_solid(const Made& made, int components = 1) {
 
 TEST(Solidify, ProceduralModels) {
   for (const TriangleSoup& soup :
-       {fixtures::cube(60), fixtures::sphere(30, 4), fixtures::torus(30, 10, 60, 30),
-        fixtures::nested_cubes(60, 20), fixtures::nested_cubes(40, 32), fixtures::thin_plate(60, 4),
-        fixtures::blob(80, 4)}) {
+       {fixtures::cube(25), fixtures::sphere(12, 3), fixtures::torus(16, 6, 40, 20),
+        fixtures::nested_cubes(30, 10), fixtures::nested_cubes(20, 16), fixtures::thin_plate(30, 4),
+        fixtures::blob(36, 3)}) {
     const Made result = made(soup);
     expect_solid(result);
     EXPECT_FALSE(result.solid.resample_tolerance_mm);
@@ -140,8 +140,8 @@ TEST(Solidify, NotHollowedIsTheWholeModel) {
 
 TEST(Solidify, SeveralBodiesStaySeveral) {
   TriangleSoup second = fixtures::sphere(15, 3);
-  for (Vec3& point : second.points) point += Vec3(80, 10, 10);
-  expect_solid(made(fixtures::together(fixtures::cube(40), second)), 2);
+  for (Vec3& point : second.points) point += Vec3(50, 10, 10);
+  expect_solid(made(fixtures::together(fixtures::cube(20), second)), 2);
 }
 
 TEST(Solidify, CrossingBodiesAreResampledAndSaySo) {
@@ -154,7 +154,7 @@ TEST(Solidify, CrossingBodiesAreResampledAndSaySo) {
 }
 
 TEST(Solidify, SameBytesOnOneAndTwoThreads) {
-  const TriangleSoup model = fixtures::blob(60, 4);
+  const TriangleSoup model = fixtures::blob(36, 3);
   const auto with_threads = [&](std::size_t threads) {
     const ThreadLimit limit(threads);
     return made(model).solid.tets;
