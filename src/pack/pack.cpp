@@ -14,6 +14,7 @@
 #include "pack/anywhere/rearrange.h"
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/settle.h"
+#include "pack/free/free_search.h"
 #include "pack/search/refine.h"
 #include "pack/search/search.h"
 
@@ -28,16 +29,27 @@ constexpr double kFinestShare = 0.25;       // of grid_mm: the grid of the last 
 constexpr double kMostCells = 4e6;          // of a tray
 constexpr double kMostCellsAcross = 15000;  // HeightCell counts them in 16 bits
 constexpr int kFinestPasses = 3;
-constexpr double kCellsOfItem = 10;     // along an item on average, at least
-constexpr double kDroppingShare = 0.4;  // of the budget: for layouts of dropped parts
-constexpr double kInTime = 0.97;        // of the budget: room for the last measurement
-constexpr double kAboutEqual = 1.005;   // costs: the layout of fewest parts is taken
+constexpr double kCellsOfItem = 10;           // along an item on average, at least
+constexpr double kDroppingShare = 0.4;        // of the budget: for layouts of dropped parts
+constexpr double kDroppingShareOfFree = 0.1;  // where they are but where a free search begins
+constexpr double kInTime = 0.97;              // of the budget: room for the last measurement
+constexpr double kAboutEqual = 1.005;         // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The last refinement's, coarser on a tray so large that it would take too much memory.
 double finest_cell_mm(const PackProblem& problem) {
   return std::max(problem.grid_mm * kFinestShare,
                   std::sqrt(problem.build_mm.x() * problem.build_mm.y() / kMostCells));
+}
+
+// Whether nothing but the height of a tray makes it dear.
+bool height_alone_counts(const PackProblem& problem) {
+  TrayMeasure narrow;
+  narrow.size_mm = problem.build_mm / 2;
+  TrayMeasure wide = narrow;
+  wide.size_mm.head<2>() = problem.build_mm.head<2>();
+  wide.support_mm3 = problem.build_mm.prod();
+  return problem.cost.evaluate(wide) == problem.cost.evaluate(narrow);
 }
 
 void check_settings(const PackProblem& problem) {
@@ -202,13 +214,15 @@ Packing with_gaps_kept(const std::function<Packing(Finisher&)>& finish, const Gr
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
 }
 
-// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes. Begins
-// with the tray before it settled: columns of bounds don't see how parts closer than that come
-// apart.
+// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes. Where
+// other things than height count, parts are put back one by one; that begins with the tray before
+// it settled: columns of bounds don't see how parts closer than that come apart.
 Packing put_under(const PackProblem& problem, const Packing& dropped, Packing settled,
                   PartMaker& maker, Pace& pace) {
   std::optional<Packing> better =
-      rearranged(problem, dropped, finest_cell_mm(problem), maker, pace);
+      height_alone_counts(problem)
+          ? searched_freely(problem, settled, pace)
+          : rearranged(problem, dropped, finest_cell_mm(problem), maker, pace);
   if (!better) return settled;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);
   measure(problem, *better);
@@ -276,7 +290,9 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
   Pace pace(progress, problem.budget_s);
   Workshop searching(problem, search_grid(problem), pace);
   make_items(problem, searching.maker);
-  pace.set_share(problem.anywhere ? kDroppingShare : 1);
+  pace.set_share(!problem.anywhere              ? 1
+                 : height_alone_counts(problem) ? kDroppingShareOfFree
+                                                : kDroppingShare);
   const std::vector<Layout> layouts = search(problem, searching.layouter, searching.maker, pace);
   pace.set_share(kInTime);
 

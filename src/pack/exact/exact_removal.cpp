@@ -1,191 +1,10 @@
 #include "pack/exact/exact_removal.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <cmath>
 
-#include "base/parallel.h"
-#include "pack/exact/exact_gap.h"
+#include "pack/exact/sweep.h"
 
 namespace packmerger {
-namespace {
-
-constexpr double kTouch_mm = 1e-3;
-constexpr double kLeastRoom_mm = 0.02;  // along a path
-
-using Facet = std::array<Vec3, 3>;
-
-double cross_z(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-Vec2 flat(const Vec3& p) { return p.head<2>(); }
-
-double turn(const Facet& facet) {
-  return cross_z(flat(facet[1]) - flat(facet[0]), flat(facet[2]) - flat(facet[0]));
-}
-
-// Facets that look up, or down, in cells seen from above. Their corners go round to the left.
-class Facing {
- public:
-  Facing(const Mesh& mesh, bool up) {
-    for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
-      Facet facet = mesh.corners(i);
-      const double twice_area = turn(facet);
-      if (up ? twice_area <= 0 : twice_area >= 0) continue;
-      if (!up) std::swap(facet[1], facet[2]);
-      facets_.push_back(facet);
-      for (const Vec3& p : facet) box_.extend(p);
-    }
-    if (facets_.empty()) return;
-    const Vec2 size = box_.sizes().head<2>();
-    cell_mm_ = std::max({std::sqrt(size.prod() / static_cast<double>(facets_.size())),
-                         size.maxCoeff() / kMostAcross, kTouch_mm});
-    width_ = 1 + static_cast<int>(size.x() / cell_mm_);
-    height_ = 1 + static_cast<int>(size.y() / cell_mm_);
-    cells_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-    for (int i = 0; i < static_cast<int>(facets_.size()); ++i)
-      for_cells(facets_[static_cast<std::size_t>(i)],
-                [&](std::vector<int>& cell) { cell.push_back(i); });
-  }
-
-  const std::vector<Facet>& facets() const { return facets_; }
-  const Box3& box() const { return box_; }
-
-  // Those that may lie over or under the facet, some of them several times.
-  template <typename Visit>
-  void near(const Facet& facet, const Visit& visit) const {
-    for_cells(facet, [&](const std::vector<int>& cell) {
-      for (const int i : cell) visit(facets_[static_cast<std::size_t>(i)]);
-    });
-  }
-
- private:
-  static constexpr double kMostAcross = 500;
-
-  template <typename Visit>
-  void for_cells(const Facet& facet, const Visit& visit) const {
-    walk(*this, facet, visit);
-  }
-  template <typename Visit>
-  void for_cells(const Facet& facet, const Visit& visit) {
-    walk(*this, facet, visit);
-  }
-  template <typename Self, typename Visit>
-  static void walk(Self& self, const Facet& facet, const Visit& visit) {
-    if (self.cells_.empty()) return;
-    const Vec3 origin = self.box_.min();
-    const Vec3 low = facet[0].cwiseMin(facet[1]).cwiseMin(facet[2]) - origin;
-    const Vec3 high = facet[0].cwiseMax(facet[1]).cwiseMax(facet[2]) - origin;
-    const auto cell = [&](double at) { return static_cast<int>(std::floor(at / self.cell_mm_)); };
-    for (int y = std::max(0, cell(low.y())); y <= std::min(self.height_ - 1, cell(high.y())); ++y)
-      for (int x = std::max(0, cell(low.x())); x <= std::min(self.width_ - 1, cell(high.x())); ++x)
-        visit(self.cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(self.width_) +
-                          static_cast<std::size_t>(x)]);
-  }
-
-  std::vector<Facet> facets_;
-  Box3 box_;
-  double cell_mm_ = 1;
-  int width_ = 0;
-  int height_ = 0;
-  std::vector<std::vector<int>> cells_;
-};
-
-double height_at(const Facet& facet, const Vec2& p) {
-  const Vec3 normal = (facet[1] - facet[0]).cross(facet[2] - facet[0]);
-  const Vec2 away = p - flat(facet[0]);
-  return facet[0].z() - (normal.x() * away.x() + normal.y() * away.y()) / normal.z();
-}
-
-// What two facets have in common, seen from above.
-std::vector<Vec2> overlap(const Facet& a, const Facet& b) {
-  std::vector<Vec2> polygon{flat(a[0]), flat(a[1]), flat(a[2])};
-  for (std::size_t i = 0; i < 3 && !polygon.empty(); ++i) {
-    const Vec2 from = flat(b[i]);
-    const Vec2 along = flat(b[(i + 1) % 3]) - from;
-    std::vector<Vec2> kept;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Vec2& here = polygon[k];
-      const Vec2& next = polygon[(k + 1) % polygon.size()];
-      const double side = cross_z(along, here - from);
-      const double next_side = cross_z(along, next - from);
-      if (side >= 0) kept.push_back(here);
-      if ((side > 0 && next_side < 0) || (side < 0 && next_side > 0))
-        kept.push_back(here + (next - here) * (side / (side - next_side)));
-    }
-    polygon = std::move(kept);
-  }
-  return polygon;
-}
-
-bool is_wide(const std::vector<Vec2>& polygon) {
-  double twice_area = 0;
-  double round = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2& next = polygon[(i + 1) % polygon.size()];
-    twice_area += cross_z(polygon[i] - polygon[0], next - polygon[0]);
-    round += (next - polygon[i]).norm();
-  }
-  return twice_area > kTouch_mm * round;
-}
-
-// The difference in height is linear over what two facets have in common, so that it is greatest at
-// a corner.
-bool stands_above(const Facet& upper, const Facet& lower) {
-  if (std::max({upper[0].z(), upper[1].z(), upper[2].z()}) <=
-      std::min({lower[0].z(), lower[1].z(), lower[2].z()}) + kTouch_mm)
-    return false;
-  const std::vector<Vec2> common = overlap(lower, upper);
-  if (!is_wide(common)) return false;
-  return std::any_of(common.begin(), common.end(), [&](const Vec2& p) {
-    return height_at(upper, p) - height_at(lower, p) > kTouch_mm;
-  });
-}
-
-bool is_under(const Facing& bottom, const Facing& top, const Progress& progress) {
-  if (bottom.facets().empty() || top.facets().empty()) return false;
-  const Box3& a = bottom.box();
-  const Box3& b = top.box();
-  if ((a.min().array() >= b.max().array()).any() ||
-      (a.max().array() <= b.min().array()).head<2>().any())
-    return false;
-  std::atomic<bool> found{false};
-  parallel_for(bottom.facets().size(), [&](std::size_t i) {
-    if (found.load(std::memory_order_relaxed)) return;
-    progress.check();
-    const Facet& lower = bottom.facets()[i];
-    top.near(lower, [&](const Facet& upper) {
-      if (!found.load(std::memory_order_relaxed) && stands_above(upper, lower)) found = true;
-    });
-  });
-  return found;
-}
-
-// The part's own path by steps that are as long as the room around it: the part it meets, if any.
-std::optional<int> met_on_path(const std::vector<MovableSurface>& surfaces, int part,
-                               const std::vector<int>& there, const std::vector<Vec3>& path,
-                               const Progress& progress) {
-  Vec3 place = Vec3::Zero();
-  for (const Vec3& step : path) {
-    const double length = step.norm();
-    for (double gone = 0; gone < length;) {
-      progress.check();
-      const Pose here(Eigen::Translation3d(place + step * (gone / length)));
-      double room = length - gone + kLeastRoom_mm;
-      for (const int other : there) {
-        room = std::min(room, surface_distance_mm(surfaces[static_cast<std::size_t>(part)], here,
-                                                  surfaces[static_cast<std::size_t>(other)],
-                                                  Pose::Identity(), room));
-        if (room < kLeastRoom_mm) return other;
-      }
-      gone += room;
-    }
-    place += step;
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 std::optional<Obstacle> first_obstacle(const std::vector<Mesh>& parts,
                                        const std::vector<int>& order,
@@ -199,18 +18,16 @@ std::optional<Obstacle> first_obstacle(const std::vector<Mesh>& parts,
   for (std::size_t at = 0; at < order.size(); ++at) {
     const int taken = order[at];
     const std::vector<int> there(order.begin() + static_cast<std::ptrdiff_t>(at) + 1, order.end());
-    Mesh moved = parts[static_cast<std::size_t>(taken)];
+    Vec3 moved = Vec3::Zero();
     if (!surfaces.empty()) {
       const std::vector<Vec3>& path = paths[static_cast<std::size_t>(taken)];
       if (const auto other = met_on_path(surfaces, taken, there, path, progress))
         return Obstacle{taken, *other};
-      Vec3 whole = Vec3::Zero();
-      for (const Vec3& step : path) whole += step;
-      moved = transformed(moved, Pose(Eigen::Translation3d(whole)));
+      for (const Vec3& step : path) moved += step;
     }
-    const Facing bottom(moved, false);
+    const Facing bottom(parts[static_cast<std::size_t>(taken)], false);
     for (const int other : there)
-      if (is_under(bottom, tops[static_cast<std::size_t>(other)], progress))
+      if (is_under(bottom, moved, tops[static_cast<std::size_t>(other)], progress))
         return Obstacle{taken, other};
   }
   return std::nullopt;

@@ -228,7 +228,11 @@ class TabuSearch {
 }  // namespace
 
 Pace::Pace(const Progress& progress, double budget_s)
-    : progress_(progress), budget_s_(budget_s), start_(Clock::now()), reported_(start_) {
+    : progress_(progress),
+      silent_({}, progress.cancelled()),
+      budget_s_(budget_s),
+      start_(Clock::now()),
+      reported_(start_) {
   progress.report("packing", 0);
 }
 

@@ -25,6 +25,8 @@ class Pace {
   void reached(double fraction);
   // To be called often: reports from time to time, and throws when cancellation was asked for.
   void tick();
+  // For what takes long and knows no pace.
+  const Progress& progress() const { return silent_; }
   bool has_budget() const { return budget_s_ > 0; }
   // How much of the budget has passed, 0 without one; 1: time is up.
   double passed() const;
@@ -36,6 +38,7 @@ class Pace {
   using Clock = std::chrono::steady_clock;
 
   Progress progress_;
+  Progress silent_;  // heard by nobody, cancelled as the other
   double budget_s_;
   double share_ = 1;
   Clock::time_point start_;

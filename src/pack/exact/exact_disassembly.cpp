@@ -1,0 +1,188 @@
+#include "pack/exact/exact_disassembly.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <queue>
+
+#include "base/parallel.h"
+#include "pack/exact/sweep.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kStep_mm = 0.5;
+constexpr double kRoom_mm = 1.2 * kLeastRoom_mm;  // at the places that are looked at
+constexpr std::array<std::size_t, 2> kMostPlaces{300, 1500};
+constexpr std::size_t kPlacesOfLift = 40;  // between two looks whether it can be lifted from here
+constexpr double kInside_mm = 1e-6;        // rounding of what stands at the edge
+
+using Lattice = std::array<int, 3>;
+
+Vec3 moved_mm(const Lattice& at) { return kStep_mm * Vec3(at[0], at[1], at[2]); }
+
+class Dismantler {
+ public:
+  Dismantler(const std::vector<Mesh>& parts, const Vec2& base_mm, const Progress& progress)
+      : base_mm_(base_mm), progress_(progress) {
+    for (const Mesh& part : parts) {
+      boxes_.push_back(bounding_box(part));
+      tops_.emplace_back(part, true);
+      bottoms_.emplace_back(part, false);
+      surfaces_.emplace_back(part);
+    }
+    there_.resize(parts.size());
+    std::iota(there_.begin(), there_.end(), 0);
+    std::stable_sort(there_.begin(), there_.end(),
+                     [this](int a, int b) { return box(a).max().z() > box(b).max().z(); });
+    plan_.paths.resize(parts.size());
+    find_who_is_under_whom();
+  }
+
+  ExactDisassembly run() {
+    while (!there_.empty() && (lift_one() || lead_one_out()))
+      ;
+    plan_.stuck = there_;
+    std::sort(plan_.stuck.begin(), plan_.stuck.end());
+    return std::move(plan_);
+  }
+
+ private:
+  struct Place {
+    Lattice at{};
+    int parent = -1;
+  };
+
+  const Box3& box(int part) const { return boxes_[static_cast<std::size_t>(part)]; }
+
+  void find_who_is_under_whom() {
+    const std::size_t count = boxes_.size();
+    under_.assign(count, std::vector<char>(count, 0));
+    parallel_tasks(count, [&](std::size_t i) {
+      for (std::size_t j = 0; j < count; ++j)
+        if (i != j) under_[i][j] = is_under(bottoms_[i], Vec3::Zero(), tops_[j], progress_) ? 1 : 0;
+    });
+  }
+
+  void take_out(int part) {
+    plan_.order.push_back(part);
+    there_.erase(std::find(there_.begin(), there_.end(), part));
+  }
+
+  bool lift_one() {
+    const auto lifted = std::find_if(there_.begin(), there_.end(), [this](int part) {
+      return std::none_of(there_.begin(), there_.end(), [&](int other) {
+        return under_[static_cast<std::size_t>(part)][static_cast<std::size_t>(other)] != 0;
+      });
+    });
+    if (lifted == there_.end()) return false;
+    take_out(*lifted);
+    return true;
+  }
+
+  bool lead_one_out() {
+    for (const std::size_t most : kMostPlaces)
+      for (const int part : there_) {
+        auto path = path_of(part, most);
+        if (!path) continue;
+        plan_.paths[static_cast<std::size_t>(part)] = std::move(*path);
+        take_out(part);
+        return true;
+      }
+    return false;
+  }
+
+  bool comes_off(int part, const Vec3& moved) const {
+    return std::none_of(there_.begin(), there_.end(), [&](int other) {
+      return other != part && is_under(bottoms_[static_cast<std::size_t>(part)], moved,
+                                       tops_[static_cast<std::size_t>(other)], progress_);
+    });
+  }
+
+  bool is_free(int part, const Vec3& moved) const {
+    const Box3 there = box(part).translated(moved);
+    if (there.min().minCoeff() < -kInside_mm ||
+        (base_mm_ - there.max().head<2>()).minCoeff() < -kInside_mm)
+      return false;
+    const Pose at(Eigen::Translation3d{moved});
+    return std::none_of(there_.begin(), there_.end(), [&](int other) {
+      return other != part && there.exteriorDistance(box(other)) < kRoom_mm &&
+             surface_distance_mm(surfaces_[static_cast<std::size_t>(part)], at,
+                                 surfaces_[static_cast<std::size_t>(other)], Pose::Identity(),
+                                 kRoom_mm) < kRoom_mm;
+    });
+  }
+
+  // Best first: the highest place, of several the one that was found first.
+  std::optional<std::vector<Vec3>> path_of(int part, std::size_t most_places) {
+    std::vector<Place> places{{}};
+    std::map<Lattice, bool> seen{{{}, true}};
+    using Open = std::pair<int, int>;  // height, and less the index of the place
+    std::priority_queue<Open> open;
+    open.push({0, 0});
+    int highest = 0;
+    for (std::size_t looked = 1; !open.empty() && looked <= most_places; ++looked) {
+      progress_.check();
+      const int index = -open.top().second;
+      open.pop();
+      const Lattice at = places[static_cast<std::size_t>(index)].at;
+      if (at[2] > highest || looked % kPlacesOfLift == 0) {
+        highest = std::max(highest, at[2]);
+        if (comes_off(part, moved_mm(at))) return swept(part, places, index);
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int sign : {1, -1}) {
+          Lattice next = at;
+          next[axis] += sign;
+          if (!seen.emplace(next, true).second) continue;
+          const Vec3 end = moved_mm(next);
+          if (!is_free(part, (moved_mm(at) + end) / 2) || !is_free(part, end)) continue;
+          open.push({next[2], -static_cast<int>(places.size())});
+          places.push_back({next, index});
+        }
+    }
+    return std::nullopt;
+  }
+
+  // The steps to a place, where nothing is met between the places that were looked at either.
+  std::optional<std::vector<Vec3>> swept(int part, const std::vector<Place>& places,
+                                         int end) const {
+    std::vector<Vec3> steps;
+    for (int at = end; places[static_cast<std::size_t>(at)].parent >= 0;) {
+      const Place& here = places[static_cast<std::size_t>(at)];
+      const Vec3 step =
+          moved_mm(here.at) - moved_mm(places[static_cast<std::size_t>(here.parent)].at);
+      if (!steps.empty() && steps.back().normalized().isApprox(step.normalized()))
+        steps.back() += step;
+      else
+        steps.push_back(step);
+      at = here.parent;
+    }
+    std::reverse(steps.begin(), steps.end());
+    std::vector<int> others = there_;
+    others.erase(std::find(others.begin(), others.end(), part));
+    if (met_on_path(surfaces_, part, others, steps, progress_)) return std::nullopt;
+    return steps;
+  }
+
+  Vec2 base_mm_;
+  const Progress& progress_;
+  std::vector<Box3> boxes_;
+  std::vector<Facing> tops_;
+  std::vector<Facing> bottoms_;
+  std::vector<MovableSurface> surfaces_;
+  std::vector<std::vector<char>> under_;  // [i][j]: i cannot be lifted before j
+  std::vector<int> there_;                // the highest first
+  ExactDisassembly plan_;
+};
+
+}  // namespace
+
+ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,
+                                   const Progress& progress) {
+  return Dismantler(parts, base_mm, progress).run();
+}
+
+}  // namespace packmerger

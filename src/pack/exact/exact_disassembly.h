@@ -1,0 +1,26 @@
+// In which order a tray's parts can be taken out, and along which paths, found on the meshes
+// themselves (assembly planning: Wilson and Latombe, 1994).
+#pragma once
+
+#include <vector>
+
+#include "base/progress.h"
+#include "model/mesh.h"
+
+namespace packmerger {
+
+struct ExactDisassembly {
+  std::vector<int> order;                // first out first; without the stuck ones
+  std::vector<std::vector<Vec3>> paths;  // by part: steps, mm, before it is lifted; empty: none
+  std::vector<int> stuck;  // for which no way out was found; that none exists is not said
+};
+
+// Parts that can be lifted straight up go first, the highest before the others; where none can, the
+// first that finds a path, by steps of half a millimetre, along which it stays within the base and
+// apart from those that are still there (sweep.h). The first of two searches looks at so few
+// positions that what comes out easily is soon found.
+// parts: closed, where they stand on one tray, mm.
+ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,
+                                   const Progress& progress);
+
+}  // namespace packmerger

@@ -1,0 +1,240 @@
+#include "pack/free/free_search.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "base/parallel.h"
+#include "pack/exact/exact_disassembly.h"
+#include "pack/exact/exact_figures.h"
+#include "pack/exact/exact_removal.h"
+#include "pack/free/limit_search.h"
+#include "pack/maps/rotations.h"
+#include "pack/separate/compression.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kReach_mm = 2.5;               // of the distances, beyond what parts keep apart
+constexpr double kSearchShare = 0.6;            // of the time, before the compression
+constexpr std::size_t kRoundsOfPatience = 400;  // for each round of the height field's search
+constexpr std::size_t kRoundsOfEpisode = 6000;  // without a layout, before another one begins
+constexpr int kSeparationSteps = 150;
+constexpr double kRaise = 0.012;  // of the height, where separation found no room
+constexpr double kMostRaised = 0.05;
+constexpr double kWorthIt = 0.999;            // of the lowest height
+constexpr double kWorthSeparating_mm = 0.25;  // below the lowest one
+constexpr double kShake_mm = 0.3;             // of what jammed
+constexpr std::size_t kMostStuckTakenOut = 2;
+constexpr int kCompressionPatience = 2;  // failures, for each round of the height field's search
+
+// Meshes that are the same to the last bit, as copies are, share a shape.
+std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
+                                                    const std::vector<PlacedPart>& parts) {
+  std::vector<Mesh> meshes;
+  std::vector<std::size_t> first_of(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    meshes.push_back(part_mesh(problem, parts[i]));
+    first_of[i] = i;
+    for (std::size_t j = 0; j < i && first_of[i] == i; ++j)
+      if (meshes[j].points() == meshes[i].points() &&
+          meshes[j].triangles() == meshes[i].triangles())
+        first_of[i] = j;
+  }
+  std::vector<std::shared_ptr<const Shape>> shapes(parts.size());
+  parallel_tasks(parts.size(), [&](std::size_t i) {
+    if (first_of[i] == i)
+      shapes[i] = std::make_shared<const Shape>(
+          meshes[i], std::max(problem.gap_mm, kLeastApart_mm) + kReach_mm);
+  });
+  for (std::size_t i = 0; i < parts.size(); ++i) shapes[i] = shapes[first_of[i]];
+  return shapes;
+}
+
+Pose own_frame(const Pose& pose, const Shape& shape) {
+  return pose * Eigen::Translation3d(shape.centre);
+}
+
+std::vector<Mat3> right_angles() {
+  const RotationSet set = rotation_set(radians(90));
+  std::vector<Mat3> rotations;
+  for (const Mat3& way : set.ways_up)
+    for (const double turn : set.turns) rotations.push_back(turn_about_z(turn) * way);
+  return rotations;
+}
+
+// One tray.
+class FreeSearch {
+ public:
+  FreeSearch(const PackProblem& problem, std::vector<std::shared_ptr<const Shape>> shapes,
+             const std::vector<Pose>& start, std::uint64_t seed, Pace& pace)
+      : problem_(problem),
+        shapes_(std::move(shapes)),
+        start_(start),
+        pace_(pace),
+        random_(seed),
+        separation_(pointers(), problem.build_mm.head<2>(), problem.gap_mm,
+                    [this] { return is_over(1); }),
+        began_(pace.passed()) {
+    lowest_mm_ = separation_.height_mm(start);
+    start_mm_ = lowest_mm_;
+  }
+
+  // Whether there is a lower layout than the start.
+  bool run() {
+    do {
+      episode();
+    } while (pace_.has_budget() && !is_over(kSearchShare));
+    std::vector<Pose> poses = poses_.empty() ? start_ : poses_;
+    compress(
+        separation_, poses,
+        pace_.has_budget() ? std::numeric_limits<int>::max()
+                           : kCompressionPatience * std::max(1, problem_.tabu_patience),
+        [this] { return is_over(1); },
+        [this](const std::vector<Pose>& lower, double height_mm) {
+          return certified(lower, height_mm).empty();
+        },
+        random_);
+    return !poses_.empty();
+  }
+
+  const std::vector<Pose>& poses() const { return poses_; }
+  const ExactDisassembly& plan() const { return plan_; }
+
+ private:
+  std::vector<const Shape*> pointers() const {
+    std::vector<const Shape*> shapes;
+    for (const auto& shape : shapes_) shapes.push_back(shape.get());
+    return shapes;
+  }
+
+  // share: of the time that was left at the beginning.
+  bool is_over(double share) const {
+    pace_.tick();
+    return pace_.passed() >= began_ + share * (1 - began_);
+  }
+
+  void episode() {
+    LimitSearch search({pointers(), right_angles()}, problem_.build_mm.head<2>(),
+                       std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_,
+                       random_.bits());
+    std::size_t rounds = 0;
+    const std::size_t patience =
+        pace_.has_budget()
+            ? kRoundsOfEpisode
+            : kRoundsOfPatience * static_cast<std::size_t>(std::max(1, problem_.tabu_patience));
+    while (search.next([&] { return is_over(kSearchShare) || ++rounds > patience; })) {
+      rounds = 0;
+      if (search.height_mm() < lowest_mm_ - kWorthSeparating_mm) {
+        const std::vector<int> stuck = made_exact(search);
+        if (!stuck.empty()) {
+          search.take_out(some_of(stuck));
+          continue;
+        }
+      }
+      search.lower_limit();
+    }
+  }
+
+  std::vector<int> some_of(const std::vector<int>& stuck) {
+    std::vector<int> some;
+    for (std::size_t i = 1 + random_.below(std::min(kMostStuckTakenOut, stuck.size())); i > 0; --i)
+      some.push_back(stuck[random_.below(stuck.size())]);
+    return some;
+  }
+
+  // Separates what the lattice found, at its height or a little above, where that is low enough.
+  // Returns the parts that cannot be taken out of what came of it.
+  std::vector<int> made_exact(const LimitSearch& search) {
+    const double height_mm = search.height_mm();
+    for (double raised = 0;
+         raised < kMostRaised && height_mm * (1 + raised) < kWorthIt * lowest_mm_;
+         raised += kRaise) {
+      std::vector<Pose> poses = search.poses();
+      if (raised > 0) {
+        shake(poses, kShake_mm, 0, random_);
+        squeeze(poses, -raised);
+      }
+      if (separation_.separate(poses, height_mm * (1 + raised), kSeparationSteps))
+        return certified(poses, separation_.height_mm(poses));
+      if (is_over(1)) break;
+    }
+    return {};
+  }
+
+  // Keeps the layout where every part has a way out; returns those that have none.
+  std::vector<int> certified(const std::vector<Pose>& poses, double height_mm) {
+    const Progress& progress = pace_.progress();
+    std::vector<Mesh> placed;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      placed.push_back(transformed(shapes_[i]->mesh, poses[i]));
+    if (plan_.order.empty() || first_obstacle(placed, plan_.order, plan_.paths, progress)) {
+      ExactDisassembly plan = exact_disassembly(placed, problem_.build_mm.head<2>(), progress);
+      if (!plan.stuck.empty()) return plan.stuck;
+      plan_ = std::move(plan);
+    }
+    poses_ = poses;
+    lowest_mm_ = height_mm;
+    return {};
+  }
+
+  const PackProblem& problem_;
+  std::vector<std::shared_ptr<const Shape>> shapes_;
+  const std::vector<Pose>& start_;
+  Pace& pace_;
+  Random random_;
+  Separation separation_;
+  double began_;
+  double start_mm_ = 0;
+  double lowest_mm_ = 0;
+  std::vector<Pose> poses_;  // the lowest that can be taken apart; empty: the start
+  ExactDisassembly plan_;    // of these
+};
+
+// Down to the plate.
+void let_down(std::vector<Pose>& poses, const std::vector<std::shared_ptr<const Shape>>& shapes) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    lowest = std::min(lowest, box_at(*shapes[i], poses[i]).min().z());
+  for (Pose& pose : poses) pose.translation().z() -= lowest;
+}
+
+}  // namespace
+
+std::optional<Packing> searched_freely(const PackProblem& problem, Packing packing, Pace& pace) {
+  bool found = false;
+  Random random(problem.seed);
+  std::vector<int> order;
+  for (int tray = 0; tray < static_cast<int>(packing.trays.size()); ++tray) {
+    std::vector<std::size_t> here;
+    std::vector<PlacedPart> parts;
+    for (std::size_t i = 0; i < packing.parts.size(); ++i)
+      if (packing.parts[i].tray == tray) {
+        here.push_back(i);
+        parts.push_back(packing.parts[i]);
+      }
+    const auto shapes = shapes_of(problem, parts);
+    std::vector<Pose> start;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      start.push_back(own_frame(parts[i].pose, *shapes[i]));
+    FreeSearch search(problem, shapes, start, random.bits(), pace);
+    if (!search.run()) {
+      for (const int part : packing.removal_order)
+        if (packing.parts[static_cast<std::size_t>(part)].tray == tray) order.push_back(part);
+      continue;
+    }
+    found = true;
+    std::vector<Pose> poses = search.poses();
+    let_down(poses, shapes);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      packing.parts[here[i]].pose = poses[i] * Eigen::Translation3d(-shapes[i]->centre);
+      packing.removal_paths[here[i]] = search.plan().paths[i];
+    }
+    for (const int part : search.plan().order)
+      order.push_back(static_cast<int>(here[static_cast<std::size_t>(part)]));
+  }
+  if (!found) return std::nullopt;
+  packing.removal_order = std::move(order);
+  return packing;
+}
+
+}  // namespace packmerger

@@ -1,0 +1,110 @@
+#include "pack/free/lowest_place.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "base/simd_targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pack/free/lowest_place.cpp"
+#include <hwy/foreach_target.h>  // includes this file once for each target
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace packmerger::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kPositions = 8;  // side by side
+constexpr hn::CappedTag<std::uint64_t, kPositions> kWords;
+using Words = hn::VFromD<decltype(kWords)>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(kWords));
+constexpr int kVectors = kPositions / kLanes;
+constexpr std::size_t kRunsOfLook = 8;  // between two looks whether any height is free
+
+// The heights that are taken at eight positions, those that were from the start among them. False
+// where that are all.
+HWY_INLINE bool take(const HeightBits& tray, const BitPart& part, std::ptrdiff_t base,
+                     std::array<std::uint64_t, kPositions>& taken) {
+  std::array<const std::uint64_t*, HeightBits::kPlanes> planes{};
+  for (int k = 0; k < HeightBits::kPlanes; ++k)
+    planes[static_cast<std::size_t>(k)] = tray.plane(k) + base;
+  const std::ptrdiff_t stride = tray.stride();
+  Words heights[kVectors];
+  for (int v = 0; v < kVectors; ++v) heights[v] = hn::LoadU(kWords, taken.data() + v * kLanes);
+  const Words all = hn::Set(kWords, ~std::uint64_t{0});
+  const std::size_t count = part.runs.size();
+  for (std::size_t next = 0; next < count;) {
+    const std::size_t look = std::min(count, next + kRunsOfLook);
+    for (; next < look; ++next) {
+      const BitRun& run = part.runs[next];
+      const std::uint64_t* words = planes[run.power] + run.y * stride + run.x;
+      const int high = run.high - (1 << run.power);
+      for (int v = 0; v < kVectors; ++v) {
+        const Words word = hn::LoadU(kWords, words + v * kLanes);
+        heights[v] = hn::Or(
+            heights[v], hn::Or(hn::ShiftRightSame(word, run.low), hn::ShiftRightSame(word, high)));
+      }
+    }
+    Words least = heights[0];
+    for (int v = 1; v < kVectors; ++v) least = hn::And(least, heights[v]);
+    if (hn::AllTrue(kWords, hn::Eq(least, all))) return false;
+  }
+  for (int v = 0; v < kVectors; ++v) hn::StoreU(heights[v], kWords, taken.data() + v * kLanes);
+  return true;
+}
+
+bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating& rating,
+                 RatedPlace& best) {
+  if (part.runs.empty()) return false;
+  const double highest = std::floor((rating.limit_mm - part.height_mm) / rating.unit_mm + 1e-6);
+  if (highest < 0) return false;
+  const int columns = tray.columns() - part.width + 1;
+  const int rows = tray.rows() - part.depth + 1;
+  bool found = false;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; x += kPositions) {
+      const double aside = part.height_mm + rating.malus_mm + rating.per_row_mm * y;
+      const double least =
+          aside + std::min(rating.per_column_mm * x, rating.per_column_mm * (x + kPositions - 1));
+      // Heights that could not be better count as taken.
+      const double pays = std::floor((best.rating_mm - least) / rating.unit_mm + 1e-9);
+      const double top = std::min(highest, pays);
+      if (!(top >= 0)) continue;
+      const std::uint64_t above =
+          top >= kHeights - 1 ? 0 : ~std::uint64_t{0} << (static_cast<int>(top) + 1);
+      std::array<std::uint64_t, kPositions> taken;
+      taken.fill(above);
+      for (int k = columns - x; k < kPositions; ++k)
+        taken[static_cast<std::size_t>(k)] = ~std::uint64_t{0};
+      if (!take(tray, part, y * tray.stride() + x, taken)) continue;
+      for (int k = 0; k < kPositions; ++k) {
+        const std::uint64_t free = ~taken[static_cast<std::size_t>(k)];
+        if (free == 0) continue;
+        const int z = std::countr_zero(free);
+        const double rated = aside + z * rating.unit_mm + rating.per_column_mm * (x + k);
+        if (rated >= best.rating_mm) continue;
+        best = {{x + k, y, z}, rated};
+        found = true;
+      }
+    }
+  return found;
+}
+
+}  // namespace packmerger::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace packmerger {
+
+HWY_EXPORT(lower_place);
+
+bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating& rating,
+                 RatedPlace& best) {
+  return HWY_DYNAMIC_DISPATCH(lower_place)(tray, part, rating, best);
+}
+
+}  // namespace packmerger
+#endif  // HWY_ONCE

@@ -1,0 +1,214 @@
+#include "pack/separate/distance_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pack/maps/columns.h"
+
+namespace packmerger {
+namespace {
+
+constexpr int kBand = 1;    // cells round a triangle's box in which its distance is taken at once
+constexpr int kSweeps = 2;  // of eight directions each
+constexpr int kNoTriangle = -1;
+
+double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp(along.dot(p - a) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * along).squaredNorm();
+}
+
+// The closest triangle of every sample, found in a narrow band and handed on from sample to
+// sample, as in the fast sweeping method (Zhao, 2005).
+class Closest {
+ public:
+  Closest(const Mesh& surface, const Vec3& low, double pitch, const std::array<int, 3>& size)
+      : surface_(surface), low_(low), pitch_(pitch), size_(size) {
+    const std::size_t samples = static_cast<std::size_t>(size[0]) *
+                                static_cast<std::size_t>(size[1]) *
+                                static_cast<std::size_t>(size[2]);
+    squared_.assign(samples, std::numeric_limits<double>::max());
+    triangle_.assign(samples, kNoTriangle);
+    for (std::size_t i = 0; i < surface.n_triangles(); ++i) enter(static_cast<int>(i));
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+      for (int direction = 0; direction < 8; ++direction)
+        hand_on({(direction & 1) != 0 ? -1 : 1, (direction & 2) != 0 ? -1 : 1,
+                 (direction & 4) != 0 ? -1 : 1});
+  }
+
+  double distance(std::size_t sample) const { return std::sqrt(squared_[sample]); }
+
+ private:
+  std::size_t index(const std::array<int, 3>& at) const {
+    return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size_[1]) +
+            static_cast<std::size_t>(at[1])) *
+               static_cast<std::size_t>(size_[0]) +
+           static_cast<std::size_t>(at[0]);
+  }
+
+  void offer(const std::array<int, 3>& at, std::size_t sample, int triangle) {
+    const double squared = squared_distance(low_ + pitch_ * Vec3(at[0], at[1], at[2]),
+                                            surface_.corners(static_cast<std::size_t>(triangle)));
+    if (squared >= squared_[sample]) return;
+    squared_[sample] = squared;
+    triangle_[sample] = triangle;
+  }
+
+  void enter(int triangle) {
+    Box3 box;
+    for (const Vec3& corner : surface_.corners(static_cast<std::size_t>(triangle)))
+      box.extend(corner);
+    std::array<int, 3> first{};
+    std::array<int, 3> last{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      const double from = (box.min()[axis] - low_[axis]) / pitch_;
+      const double to = (box.max()[axis] - low_[axis]) / pitch_;
+      first[k] = std::max(0, static_cast<int>(std::floor(from)) - kBand);
+      last[k] = std::min(size_[k] - 1, static_cast<int>(std::ceil(to)) + kBand);
+    }
+    std::array<int, 3> at{};
+    for (at[2] = first[2]; at[2] <= last[2]; ++at[2])
+      for (at[1] = first[1]; at[1] <= last[1]; ++at[1])
+        for (at[0] = first[0]; at[0] <= last[0]; ++at[0]) offer(at, index(at), triangle);
+  }
+
+  void hand_on(const std::array<int, 3>& step) {
+    std::array<int, 3> at{};
+    const auto begin = [&](std::size_t k) { return step[k] > 0 ? 0 : size_[k] - 1; };
+    const auto within = [&](std::size_t k) { return at[k] >= 0 && at[k] < size_[k]; };
+    for (at[2] = begin(2); within(2); at[2] += step[2])
+      for (at[1] = begin(1); within(1); at[1] += step[1])
+        for (at[0] = begin(0); within(0); at[0] += step[0]) {
+          const std::size_t sample = index(at);
+          for (std::size_t k = 0; k < 3; ++k) {
+            if (at[k] == begin(k)) continue;
+            std::array<int, 3> before = at;
+            before[k] -= step[k];
+            const int triangle = triangle_[index(before)];
+            if (triangle != kNoTriangle && triangle != triangle_[sample])
+              offer(at, sample, triangle);
+          }
+        }
+  }
+
+  const Mesh& surface_;
+  Vec3 low_;
+  double pitch_;
+  std::array<int, 3> size_;
+  std::vector<double> squared_;
+  std::vector<int> triangle_;
+};
+
+}  // namespace
+
+double squared_distance(const Vec3& p, const std::array<Vec3, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  const Vec3 normal = (b - a).cross(c - a);
+  const double area2 = normal.squaredNorm();
+  const bool above = area2 > 0 && normal.dot((b - a).cross(p - a)) >= 0 &&
+                     normal.dot((c - b).cross(p - b)) >= 0 && normal.dot((a - c).cross(p - c)) >= 0;
+  if (above) {
+    const double height = normal.dot(p - a);
+    return height * height / area2;
+  }
+  return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                   squared_distance_to_segment(p, c, a)});
+}
+
+DistanceGrid::DistanceGrid(const Mesh& surface, double pitch_mm, double reach_mm)
+    : pitch_(static_cast<float>(pitch_mm)) {
+  const double pitch = pitch_;
+  const Box3 box = bounding_box(surface);
+  low_ = (box.min() - Vec3::Constant(reach_mm + pitch)).cast<float>();
+  const Vec3 low = low_.cast<double>();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    size_[k] =
+        2 + static_cast<int>(std::ceil((box.max()[axis] + reach_mm + pitch - low[axis]) / pitch));
+    high_[axis] = low_[axis] + pitch_ * static_cast<float>(size_[k] - 1);
+  }
+  const Closest closest(surface, low, pitch, size_);
+  distance_.resize(index(0, 0, size_[2]));
+  for (std::size_t i = 0; i < distance_.size(); ++i)
+    distance_[i] = static_cast<float>(closest.distance(i));
+
+  // Lines through the centres of cells are those through the samples of a grid half a cell aside.
+  Pose aside = Pose::Identity();
+  aside.translation() = Vec3(pitch / 2, pitch / 2, 0) - low;
+  const std::vector<Crossing> crossings = sorted_crossings({transformed(surface, aside)}, pitch, 0);
+  int depth = 0;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    const Crossing& here = crossings[i];
+    const Crossing& next = crossings[i + 1];
+    if (i > 0 && (here.row != crossings[i - 1].row || here.column != crossings[i - 1].column))
+      depth = 0;
+    depth += here.enters ? 1 : -1;
+    if (depth <= 0 || next.row != here.row || next.column != here.column) continue;
+    const int last = std::min(size_[2] - 1, static_cast<int>(std::floor(next.z / pitch)));
+    for (int z = std::max(0, static_cast<int>(std::ceil(here.z / pitch))); z <= last; ++z) {
+      float& distance = distance_[index(here.column, here.row, z)];
+      distance = -std::abs(distance);
+    }
+  }
+}
+
+DistanceGrid::Cell DistanceGrid::cell(const Vec3f& point) const {
+  const Vec3f at = (point - low_) / pitch_;
+  // Written so that a point that is no number is not within.
+  const bool within =
+      at.x() >= 0 && at.y() >= 0 && at.z() >= 0 && at.x() < static_cast<float>(size_[0] - 1) &&
+      at.y() < static_cast<float>(size_[1] - 1) && at.z() < static_cast<float>(size_[2] - 1);
+  if (!within) return {};
+  const int x = static_cast<int>(at.x());
+  const int y = static_cast<int>(at.y());
+  const int z = static_cast<int>(at.z());
+  return {&distance_[index(x, y, z)],
+          at - Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))};
+}
+
+float DistanceGrid::at(const Vec3f& point) const {
+  const Cell here = cell(point);
+  if (here.first == nullptr) return kFar;
+  const float* near = here.first;
+  const float* far = near + static_cast<std::ptrdiff_t>(size_[0]) * size_[1];
+  const std::ptrdiff_t row = size_[0];
+  const auto along_x = [&](const float* c) { return c[0] + here.inside.x() * (c[1] - c[0]); };
+  const auto along_y = [&](const float* c) {
+    const float a = along_x(c);
+    return a + here.inside.y() * (along_x(c + row) - a);
+  };
+  const float a = along_y(near);
+  return a + here.inside.z() * (along_y(far) - a);
+}
+
+float DistanceGrid::at(const Vec3f& point, Vec3f& gradient) const {
+  const Cell here = cell(point);
+  if (here.first == nullptr) return kFar;
+  const float fx = here.inside.x();
+  const float fy = here.inside.y();
+  const float fz = here.inside.z();
+  const std::ptrdiff_t row = size_[0];
+  // By y and z: the value along x at both ends, and its slope.
+  const auto line = [&](const float* c) {
+    return std::pair<float, float>(c[0] + fx * (c[1] - c[0]), c[1] - c[0]);
+  };
+  const float* near = here.first;
+  const float* far = near + row * size_[1];
+  const auto [a, slope_a] = line(near);
+  const auto [b, slope_b] = line(near + row);
+  const auto [c, slope_c] = line(far);
+  const auto [d, slope_d] = line(far + row);
+  const float ab = a + fy * (b - a);
+  const float cd = c + fy * (d - c);
+  const float slope_ab = slope_a + fy * (slope_b - slope_a);
+  const float slope_cd = slope_c + fy * (slope_d - slope_c);
+  gradient =
+      Vec3f(slope_ab + fz * (slope_cd - slope_ab), (b - a) + fz * ((d - c) - (b - a)), cd - ab) /
+      pitch_;
+  return ab + fz * (cd - ab);
+}
+
+}  // namespace packmerger

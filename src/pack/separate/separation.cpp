@@ -1,0 +1,159 @@
+#include "pack/separate/separation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "pack/separate/quasi_newton.h"
+
+namespace packmerger {
+namespace {
+
+constexpr double kMargin_mm = 0.02;     // more than is asked for: the samples see too little
+constexpr double kNearly_mm = 0.03;     // what may be lacking at the end of a minimisation
+constexpr double kStillNear_mm = 0.07;  // of a later one, that is worth another exact look
+constexpr int kExactLooks = 12;
+constexpr double kWidenBy_mm = 0.03;  // at least
+constexpr double kMostWidened_mm = 0.4;
+constexpr double kLongestStep_mm = 1;
+constexpr double kFirstStep = 0.01;  // of the gradient
+constexpr int kHalvings = 6;
+constexpr double kShorter = 0.4;
+constexpr double kSufficient = 1e-4;  // of the decrease that the slope promises (Armijo)
+constexpr int kStepsOfLook = 25;      // after so many, one that gains too little is given up
+constexpr double kWorthGoingOn = 0.9;
+constexpr int kFreshStarts = 3;
+constexpr double kTold_mm = 0.1;  // beyond what is asked for
+
+}  // namespace
+
+Separation::Separation(std::vector<const Shape*> shapes, const Vec2& base_mm, double gap_mm,
+                       std::function<bool()> is_over)
+    : shapes_(std::move(shapes)),
+      base_mm_(base_mm),
+      apart_mm_(std::max(gap_mm, kLeastApart_mm)),
+      is_over_(std::move(is_over)) {}
+
+bool Separation::separate(std::vector<Pose>& poses, double height_mm, int most_steps) const {
+  const Vec3 box_mm(base_mm_.x(), base_mm_.y(), height_mm);
+  Rooms rooms(poses.size(), apart_mm_ + kMargin_mm);
+  std::vector<Pose> trial = poses;
+  if (minimise(trial, box_mm, rooms, most_steps) > kNearly_mm) return false;
+  for (int look = 0; look < kExactLooks; ++look) {
+    if (!widen_where_close(trial, box_mm, rooms)) {
+      poses = std::move(trial);
+      return true;
+    }
+    if (is_over_() || minimise(trial, box_mm, rooms, most_steps) > kStillNear_mm) return false;
+  }
+  return false;
+}
+
+// Returns what is lacking most.
+double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const Rooms& rooms,
+                            int most_steps) const {
+  const std::vector<Pose> from = poses;
+  Eigen::VectorXd at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * poses.size()));
+  Overlap here = overlap(shapes_, poses, box_mm, rooms);
+  QuasiNewton memory;
+  int fresh_starts = 0;
+  double looked_at = here.energy;
+  for (int step = 1; step <= most_steps && here.deepest_mm > kNearly_mm && !is_over_(); ++step) {
+    Eigen::VectorXd direction = memory.direction(here.gradient, kFirstStep);
+    if (here.gradient.dot(direction) >= 0) {
+      memory.forget();
+      direction = -kFirstStep * here.gradient;
+    }
+    const double longest = direction.cwiseAbs().maxCoeff();
+    if (!std::isfinite(longest)) break;
+    if (longest > kLongestStep_mm) direction *= kLongestStep_mm / longest;
+    const double slope = here.gradient.dot(direction);
+    bool is_lower = false;
+    double length = 1;
+    for (int halving = 0; halving < kHalvings && !is_lower; ++halving, length *= kShorter) {
+      const Eigen::VectorXd next_at = at + length * direction;
+      std::vector<Pose> next_poses = moved(shapes_, from, next_at);
+      Overlap next = overlap(shapes_, next_poses, box_mm, rooms);
+      if (next.energy > here.energy + kSufficient * length * slope) continue;
+      is_lower = true;
+      memory.learn(next_at - at, next.gradient - here.gradient);
+      at = next_at;
+      poses = std::move(next_poses);
+      here = std::move(next);
+    }
+    if (!is_lower) {
+      if (memory.knows_nothing() || ++fresh_starts > kFreshStarts) break;
+      memory.forget();
+    }
+    if (step % kStepsOfLook == 0) {
+      if (here.energy > kWorthGoingOn * looked_at && here.deepest_mm > 3 * kNearly_mm) break;
+      looked_at = here.energy;
+    }
+  }
+  return here.deepest_mm;
+}
+
+// Whether anything is too close to another part or to a wall.
+bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& box_mm,
+                                   Rooms& rooms) const {
+  bool close = false;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Box3 box = box_at(*shapes_[i], poses[i]);
+    const double outside = std::max(-box.min().minCoeff(), (box.max() - box_mm).maxCoeff());
+    if (outside > 0) {
+      rooms.widen_wall(i, outside + kWidenBy_mm / 3);
+      close = true;
+    }
+    for (std::size_t j = i + 1; j < poses.size(); ++j)
+      if ((poses[i].translation() - poses[j].translation()).norm() <
+          shapes_[i]->radius_mm + shapes_[j]->radius_mm + apart_mm_)
+        pairs.emplace_back(i, j);
+  }
+  std::vector<double> gaps(pairs.size());
+  parallel_tasks(pairs.size(), [&](std::size_t k) {
+    const auto i = pairs[k].first;
+    const auto j = pairs[k].second;
+    gaps[k] = surface_distance_mm(shapes_[i]->surface, poses[i], shapes_[j]->surface, poses[j],
+                                  apart_mm_ + kTold_mm);
+  });
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (gaps[k] >= apart_mm_) continue;
+    close = true;
+    const auto i = pairs[k].first;
+    const auto j = pairs[k].second;
+    const double widened = rooms.pair(i, j) - apart_mm_ - kMargin_mm;
+    // Surfaces that meet do not tell how deep.
+    const double lacking = gaps[k] > 0 ? apart_mm_ - gaps[k] + kWidenBy_mm / 3 : 0;
+    rooms.widen(i, j, std::min(std::max(kWidenBy_mm, lacking), kMostWidened_mm - widened));
+  }
+  return close;
+}
+
+double Separation::height_mm(const std::vector<Pose>& poses) const {
+  double height = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    height = std::max(height, box_at(*shapes_[i], poses[i]).max().z());
+  return height;
+}
+
+void shake(std::vector<Pose>& poses, double shift_mm, double angle, Random& random) {
+  const auto about_zero = [&random] { return random.unit() - 0.5; };
+  for (Pose& pose : poses) {
+    Vec3 shift;
+    Vec3 axis;
+    for (int k = 0; k < 3; ++k) {
+      shift[k] = shift_mm * about_zero();
+      axis[k] = about_zero();
+    }
+    pose.translation() += shift;
+    if (axis.norm() > 0)
+      pose.linear() = Eigen::AngleAxisd(angle * about_zero(), axis.normalized()) * pose.linear();
+  }
+}
+
+void squeeze(std::vector<Pose>& poses, double share) {
+  for (Pose& pose : poses) pose.translation().z() *= 1 - share;
+}
+
+}  // namespace packmerger

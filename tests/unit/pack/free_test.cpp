@@ -1,0 +1,298 @@
+// Parts anywhere on their tray: the lattice, the distances, the separation and the ways out.
+#include <gtest/gtest.h>
+
+#include <rapidcheck/gtest.h>
+
+#include "base/parallel.h"
+#include "pack/exact/exact_disassembly.h"
+#include "pack/exact/exact_figures.h"
+#include "pack/exact/exact_removal.h"
+#include "pack/free/free_search.h"
+#include "pack/free/limit_search.h"
+#include "pack/pack.h"
+#include "pack/separate/compression.h"
+#include "unit/pack/check.h"
+#include "unit/pack/problems.h"
+
+namespace packmerger {
+namespace {
+
+std::vector<Mesh> solids() {
+  return {shapes::cup(8, 12, 2, 12), shapes::l_shape(14, 4, 6), shapes::box(Vec3(5, 9, 12)),
+          shapes::bowl(9, 2, 12)};
+}
+
+Mesh random_solid(Random& random) {
+  return shapes::turned(solids()[random.below(4)], shapes::any_rotation(random));
+}
+
+// Drawn once: that is what takes the time.
+const Shape& random_shape(Random& random) {
+  static const std::vector<Shape> shapes = [] {
+    std::vector<Shape> made;
+    for (const Mesh& mesh : solids()) made.emplace_back(mesh, 4);
+    return made;
+  }();
+  return shapes[random.below(shapes.size())];
+}
+
+// By the sign of the solid angle.
+bool is_inside(const Mesh& mesh, const Vec3& p) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto corner = mesh.corners(i);
+    const Vec3 a = (corner[0] - p).normalized();
+    const Vec3 b = (corner[1] - p).normalized();
+    const Vec3 c = (corner[2] - p).normalized();
+    sum += std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+  }
+  return sum > std::numbers::pi;
+}
+
+double closest_triangle(const Mesh& mesh, const Vec3& p) {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto corner = mesh.corners(i);
+    best = std::min(best, check::point_distance(p, corner));
+    for (std::size_t k = 0; k < 3; ++k)
+      best = std::min(best, check::segment_distance(p, p, corner[k], corner[(k + 1) % 3]));
+  }
+  return best;
+}
+
+RC_GTEST_PROP(DistanceGrid, TellsTheDistanceToTheClosestTriangle, (std::uint64_t seed)) {
+  Random random(seed);
+  const Mesh mesh = random_solid(random);
+  const DistanceGrid grid(mesh, 1, 3);
+  const Box3 box = bounding_box(mesh);
+  for (int i = 0; i < 20; ++i) {
+    Vec3 point;
+    for (int k = 0; k < 3; ++k)
+      point[k] = box.min()[k] - 2.5 + random.unit() * (box.sizes()[k] + 5);
+    const double exact = closest_triangle(mesh, point) * (is_inside(mesh, point) ? -1 : 1);
+    Vec3f gradient = Vec3f::Zero();
+    const float told = grid.at(point.cast<float>(), gradient);
+    RC_ASSERT(std::abs(told - exact) < std::sqrt(3) / 2);
+    RC_ASSERT(told == grid.at(point.cast<float>()));
+    RC_ASSERT(gradient.norm() < 1.8F);
+  }
+  RC_ASSERT(grid.at(Vec3f::Constant(std::numeric_limits<float>::quiet_NaN())) ==
+            DistanceGrid::kFar);
+}
+
+BitPart random_bits(Random& random, const BitGrid& grid) {
+  return bit_part(random_shape(random), shapes::any_rotation(random), grid,
+                  random.below(2) == 0 ? 0 : 1);
+}
+
+using Matter = std::vector<std::array<bool, kHeights>>;
+
+bool meets(const Matter& matter, const BitGrid& grid, const BitPart& part, const BitPlace& at) {
+  for (const BitRun& run : part.runs)
+    for (int z = run.low + at.z; z < run.high + at.z; ++z)
+      if (matter[static_cast<std::size_t>((at.y + run.y) * grid.columns + at.x + run.x)]
+                [static_cast<std::size_t>(z)])
+        return true;
+  return false;
+}
+
+// The scan of height bits against loops over single cells; what was cleared is as if it had never
+// been there.
+RC_GTEST_PROP(LowestPlace, IsTheLowestOfAllPlaces, (std::uint64_t seed)) {
+  Random random(seed);
+  const BitGrid grid{1.9, 1.3, 15 + static_cast<int>(random.below(9)), 13};
+  HeightBits tray(grid);
+  Matter matter(static_cast<std::size_t>(grid.columns * grid.rows));
+  for (int i = 0; i < 4; ++i) {
+    const BitPart part = random_bits(random, grid);
+    const PlaceRating rating{20 + 30 * random.unit(), grid.unit_mm, 0.5 * random.unit(),
+                             0.02 * random.unit() - 0.01, 0.02 * random.unit() - 0.01};
+    RatedPlace expected{{}, 1e9};
+    bool there_is_one = false;
+    for (int y = 0; y + part.depth <= grid.rows; ++y)
+      for (int x = 0; x + part.width <= grid.columns; ++x) {
+        const std::uint64_t taken = tray.taken(part, x, y);
+        for (int z = 0; z * grid.unit_mm + part.height_mm <= rating.limit_mm; ++z) {
+          const bool is_taken = meets(matter, grid, part, {x, y, z});
+          RC_ASSERT(is_taken == ((taken >> z & 1) != 0));
+          const double rated = part.height_mm + rating.malus_mm + rating.per_row_mm * y +
+                               z * grid.unit_mm + rating.per_column_mm * x;
+          if (is_taken || rated >= expected.rating_mm) continue;
+          expected = {{x, y, z}, rated};
+          there_is_one = true;
+        }
+      }
+    RatedPlace found{{}, 1e9};
+    RC_ASSERT(lower_place(tray, part, rating, found) == there_is_one);
+    if (!there_is_one) continue;
+    RC_ASSERT(std::abs(found.rating_mm - expected.rating_mm) < 1e-9);
+    const BitPlace& at = found.place;
+    RC_ASSERT(!meets(matter, grid, part, at));
+    tray.fill(part, at.x, at.y, at.z);
+    if (random.below(3) == 0) {
+      tray.clear(part, at.x, at.y, at.z);
+      continue;
+    }
+    for (const BitRun& run : part.runs)
+      for (int z = run.low + at.z; z < run.high + at.z; ++z)
+        matter[static_cast<std::size_t>((at.y + run.y) * grid.columns + at.x + run.x)]
+              [static_cast<std::size_t>(z)] = true;
+  }
+}
+
+// The gradient is the energy's, by differences.
+RC_GTEST_PROP(Overlap, FallsAgainstItsGradient, (std::uint64_t seed)) {
+  Random random(seed);
+  const Shape& one = random_shape(random);
+  const Shape& other = random_shape(random);
+  const std::vector<const Shape*> both{&one, &other};
+  std::vector<Pose> poses(2, Pose::Identity());
+  for (Pose& pose : poses) {
+    pose.linear() = shapes::any_rotation(random);
+    for (int k = 0; k < 3; ++k) pose.translation()[k] = 6 + 8 * random.unit();
+  }
+  const Vec3 box_mm(20, 20, 20);
+  const Rooms rooms(2, 0.5);
+  const Overlap here = overlap(both, poses, box_mm, rooms);
+  if (here.gradient.norm() < 1) return;
+  const Eigen::VectorXd step = -1e-3 * here.gradient.normalized();
+  const Overlap next = overlap(both, moved(both, poses, step), box_mm, rooms);
+  RC_ASSERT(next.energy < here.energy);
+}
+
+TEST(Separation, MovesPartsApartThatOverlapALittle) {
+  const Shape ball(shapes::sphere(6, 16), 3);
+  const Shape cube(shapes::box(Vec3(10, 10, 10)), 3);
+  std::vector<Pose> poses(3, Pose::Identity());
+  poses[0].translation() = Vec3(6, 6, 6.2);
+  poses[1].translation() = Vec3(16, 7, 5);
+  poses[2].translation() = Vec3(16, 16, 5.5);
+  const Separation separation({&ball, &cube, &cube}, Vec2(30, 30), 1, [] { return false; });
+  ASSERT_TRUE(separation.separate(poses, 13, 200));
+  EXPECT_LE(separation.height_mm(poses), 13);
+  std::vector<Mesh> placed{transformed(ball.mesh, poses[0]), transformed(cube.mesh, poses[1]),
+                           transformed(cube.mesh, poses[2])};
+  EXPECT_GE(least_gap_mm(placed), 1);
+  for (const Mesh& mesh : placed) EXPECT_GE(bounding_box(mesh).min().minCoeff(), 0);
+  const std::vector<Pose> before = poses;
+  EXPECT_FALSE(separation.separate(poses, 9, 200)) << "a cube is higher";
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(poses[i].matrix(), before[i].matrix());
+}
+
+// A cube on a slope of air: compression lets it down, the judge's limit is kept.
+TEST(Compression, GoesBackToTheLastLayoutThatWasAccepted) {
+  const Shape cube(shapes::box(Vec3(10, 10, 10)), 3);
+  std::vector<Pose> poses(2, Pose::Identity());
+  poses[0].translation() = Vec3(6, 6, 6);
+  poses[1].translation() = Vec3(20, 20, 14);
+  const Separation separation({&cube, &cube}, Vec2(30, 30), 0, [] { return false; });
+  Random random(1);
+  std::vector<Pose> free = poses;
+  compress(
+      separation, free, 8, [] { return false; }, [](const auto&, double) { return true; }, random);
+  EXPECT_LT(separation.height_mm(free), 10.3);
+  compress(
+      separation, poses, 8, [] { return false; },
+      [](const auto&, double height_mm) { return height_mm > 15; }, random);
+  EXPECT_GT(separation.height_mm(poses), 15);
+  EXPECT_LT(separation.height_mm(poses), 15.6);
+}
+
+// A ball under an upturned cup comes out after it, a cube in the clasp of a U is drawn out of it,
+// and a ball in a closed box never comes out.
+TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
+  const auto at = [](const Mesh& mesh, const Vec3& low) {
+    return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
+  };
+  const Vec2 base_mm(60, 60);
+  const Mesh cup =
+      at(shapes::turned(shapes::cup(10, 15, 2),
+                        Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()).toRotationMatrix()),
+         Vec3(5, 5, 0));
+  const Mesh ball = at(shapes::sphere(4, 12), Vec3(11, 11, 1));
+  const ExactDisassembly lifted = exact_disassembly({ball, cup}, base_mm, {});
+  EXPECT_EQ(lifted.order, (std::vector<int>{1, 0}));
+  EXPECT_TRUE(lifted.stuck.empty());
+  EXPECT_TRUE(lifted.paths[0].empty() && lifted.paths[1].empty());
+
+  // A U on its side, open to the right, and a cube between its legs.
+  const Mesh u = shapes::extruded(
+      {{0, 0}, {5, 0}, {25, 0}, {30, 0}, {30, 20}, {25, 20}, {25, 5}, {5, 5}, {5, 20}, {0, 20}},
+      {{0, 1, 7, 8, 9}, {1, 2, 6, 7}, {3, 4, 5, 6, 2}}, 10);
+  const auto quarter = [](const Vec3& axis) {
+    return Eigen::AngleAxisd(std::numbers::pi / 2, axis).toRotationMatrix();
+  };
+  const std::vector<Mesh> clasped{
+      at(shapes::turned(u, quarter(Vec3::UnitY()) * quarter(Vec3::UnitX())), Vec3(5, 5, 0)),
+      at(shapes::box(Vec3(10, 8, 10)), Vec3(12, 6, 6))};
+  const ExactDisassembly drawn = exact_disassembly(clasped, base_mm, {});
+  EXPECT_TRUE(drawn.stuck.empty());
+  EXPECT_FALSE(drawn.paths[0].empty() && drawn.paths[1].empty());
+  EXPECT_FALSE(first_obstacle(clasped, drawn.order, drawn.paths, {}));
+  EXPECT_TRUE(first_obstacle(clasped, drawn.order, {{}, {}}, {}));
+
+  const Mesh shut = at(shapes::box(Vec3(20, 20, 20)), Vec3(5, 5, 0));
+  TriangleSoup soup = to_soup(shut);
+  const TriangleSoup hollow = to_soup(at(shapes::box(Vec3(14, 14, 14)), Vec3(8, 8, 3)));
+  const auto offset = static_cast<int>(soup.points.size());
+  soup.points.insert(soup.points.end(), hollow.points.begin(), hollow.points.end());
+  for (const auto& [a, b, c] : hollow.triangles)
+    soup.triangles.push_back({a + offset, c + offset, b + offset});
+  const ExactDisassembly none = exact_disassembly(
+      {closed_mesh(soup), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, base_mm, {});
+  EXPECT_EQ(none.stuck, (std::vector<int>{0, 1}));
+}
+
+PackProblem low_problem(std::vector<Mesh> meshes, const Vec3& build_mm, double gap_mm) {
+  PackProblem problem = shapes::problem_of(std::move(meshes), build_mm);
+  problem.gap_mm = gap_mm;
+  problem.anywhere = true;
+  problem.tabu_patience = 1;
+  problem.cost.evaluate = [](const TrayMeasure& tray) { return tray.size_mm.z(); };
+  problem.cost.lower_bound = problem.cost.evaluate;
+  return problem;
+}
+
+// Every tray keeps what pack.h promises, and is no higher than without the search.
+TEST(FreeSearch, KeepsWhatIsPromised) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Random random(seed);
+    std::vector<Mesh> meshes;
+    for (int i = 0; i < 6; ++i) meshes.push_back(random_solid(random));
+    PackProblem problem = low_problem(std::move(meshes), Vec3(30, 30, 80), seed % 2 == 0 ? 0 : 0.6);
+    problem.seed = seed;
+    const Packing free = pack(problem, {});
+    check::expect_valid(problem, free, 0.25);
+    problem.anywhere = false;
+    EXPECT_LE(free.cost, pack(problem, {}).cost);
+  }
+}
+
+TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
+  Random random(5);
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 6; ++i) meshes.push_back(random_solid(random));
+  PackProblem problem = low_problem(std::move(meshes), Vec3(28, 28, 80), 0.4);
+  const Packing two = pack(problem, {});
+  const ThreadLimit limit(1);
+  const Packing one = pack(problem, {});
+  EXPECT_EQ(one.removal_order, two.removal_order);
+  EXPECT_EQ(one.removal_paths, two.removal_paths);
+  for (std::size_t i = 0; i < one.parts.size(); ++i)
+    EXPECT_EQ(one.parts[i].pose.matrix(), two.parts[i].pose.matrix());
+}
+
+TEST(FreeSearch, FindsALowerTrayThanDropping) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 3; ++i) meshes.push_back(shapes::cup(9, 16, 2, 16));
+  for (int i = 0; i < 3; ++i) meshes.push_back(shapes::sphere(6, 12));
+  for (int i = 0; i < 4; ++i) meshes.push_back(shapes::l_shape(18, 5, 9));
+  PackProblem problem = low_problem(std::move(meshes), Vec3(40, 40, 90), 0);
+  const Packing free = pack(problem, {});
+  check::expect_valid(problem, free, 0.25);
+  problem.anywhere = false;
+  EXPECT_LT(free.cost, 0.95 * pack(problem, {}).cost);
+}
+
+}  // namespace
+}  // namespace packmerger
