@@ -14,10 +14,13 @@
 namespace packmerger {
 namespace {
 
-constexpr double kReach_mm = 2.5;               // of the distances, beyond what parts keep apart
+constexpr double kReach_mm = 2.5;  // of the distances, beyond what parts keep apart
+constexpr double kEarly = 0.2;     // of the time: only what is much lower is made exact
+constexpr double kMuchLower_mm = 1;
 constexpr double kSearchShare = 0.6;            // of the time, before the compression
 constexpr std::size_t kRoundsOfPatience = 400;  // for each round of the height field's search
-constexpr std::size_t kRoundsOfEpisode = 6000;  // without a layout, before another one begins
+constexpr std::size_t kRoundsOfTurn = 6000;  // without a layout, before the lattice begins afresh
+constexpr double kLastTurn = 0.98;           // of the time: none begins after it
 constexpr int kSeparationSteps = 150;
 constexpr double kRaise = 0.012;  // of the height, where separation found no room
 constexpr double kMostRaised = 0.05;
@@ -25,7 +28,7 @@ constexpr double kWorthIt = 0.999;            // of the lowest height
 constexpr double kWorthSeparating_mm = 0.25;  // below the lowest one
 constexpr double kShake_mm = 0.3;             // of what jammed
 constexpr std::size_t kMostStuckTakenOut = 2;
-constexpr int kCompressionPatience = 2;  // failures, for each round of the height field's search
+constexpr int kCompressionPatience = 16;  // failures one after the other
 
 // Meshes that are the same to the last bit, as copies are, share a shape.
 std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
@@ -65,8 +68,9 @@ std::vector<Mat3> right_angles() {
 // One tray.
 class FreeSearch {
  public:
+  // share: of the time that is left.
   FreeSearch(const PackProblem& problem, std::vector<std::shared_ptr<const Shape>> shapes,
-             const std::vector<Pose>& start, std::uint64_t seed, Pace& pace)
+             const std::vector<Pose>& start, double share, std::uint64_t seed, Pace& pace)
       : problem_(problem),
         shapes_(std::move(shapes)),
         start_(start),
@@ -74,26 +78,21 @@ class FreeSearch {
         random_(seed),
         separation_(pointers(), problem.build_mm.head<2>(), problem.gap_mm,
                     [this] { return is_over(1); }),
-        began_(pace.passed()) {
+        began_(pace.passed()),
+        time_(share * (1 - began_)) {
     lowest_mm_ = separation_.height_mm(start);
     start_mm_ = lowest_mm_;
   }
 
-  // Whether there is a lower layout than the start.
+  // Whether there is a lower layout than the start. With a budget, lattice and compression take
+  // turns: what jams in the one goes on in the other.
   bool run() {
+    double until = kSearchShare;
     do {
-      episode();
-    } while (pace_.has_budget() && !is_over(kSearchShare));
-    std::vector<Pose> poses = poses_.empty() ? start_ : poses_;
-    compress(
-        separation_, poses,
-        pace_.has_budget() ? std::numeric_limits<int>::max()
-                           : kCompressionPatience * std::max(1, problem_.tabu_patience),
-        [this] { return is_over(1); },
-        [this](const std::vector<Pose>& lower, double height_mm) {
-          return certified(lower, height_mm).empty();
-        },
-        random_);
+      lower_on_lattice(until);
+      compress_lowest();
+      until += kSearchShare * (1 - until);
+    } while (pace_.has_budget() && !is_over(kLastTurn));
     return !poses_.empty();
   }
 
@@ -107,32 +106,47 @@ class FreeSearch {
     return shapes;
   }
 
-  // share: of the time that was left at the beginning.
+  // share: of the time that the tray has.
   bool is_over(double share) const {
     pace_.tick();
-    return pace_.passed() >= began_ + share * (1 - began_);
+    return pace_.passed() >= began_ + share * time_;
   }
 
-  void episode() {
-    LimitSearch search({pointers(), right_angles()}, problem_.build_mm.head<2>(),
+  void lower_on_lattice(double until) {
+    if (!lattice_)
+      lattice_.emplace(FreeParts{pointers(), right_angles()}, problem_.build_mm.head<2>(),
                        std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_,
                        random_.bits());
     std::size_t rounds = 0;
     const std::size_t patience =
         pace_.has_budget()
-            ? kRoundsOfEpisode
+            ? kRoundsOfTurn
             : kRoundsOfPatience * static_cast<std::size_t>(std::max(1, problem_.tabu_patience));
-    while (search.next([&] { return is_over(kSearchShare) || ++rounds > patience; })) {
+    while (lattice_->next([&] { return is_over(until) || ++rounds > patience; })) {
       rounds = 0;
-      if (search.height_mm() < lowest_mm_ - kWorthSeparating_mm) {
-        const std::vector<int> stuck = made_exact(search);
+      const double lower_mm =
+          pace_.has_budget() && !is_over(kEarly) ? kMuchLower_mm : kWorthSeparating_mm;
+      if (lattice_->height_mm() < lowest_mm_ - lower_mm) {
+        const std::vector<int> stuck = made_exact(*lattice_);
         if (!stuck.empty()) {
-          search.take_out(some_of(stuck));
+          lattice_->take_out(some_of(stuck));
           continue;
         }
       }
-      search.lower_limit();
+      lattice_->lower_limit();
     }
+    // Stuck: the next turn begins with another layout.
+    if (rounds > patience) lattice_.reset();
+  }
+
+  void compress_lowest() {
+    std::vector<Pose> poses = poses_.empty() ? start_ : poses_;
+    compress(
+        separation_, poses, kCompressionPatience, [this] { return is_over(1); },
+        [this](const std::vector<Pose>& lower, double height_mm) {
+          return certified(lower, height_mm).empty();
+        },
+        random_);
   }
 
   std::vector<int> some_of(const std::vector<int>& stuck) {
@@ -184,8 +198,10 @@ class FreeSearch {
   Random random_;
   Separation separation_;
   double began_;
+  double time_;
   double start_mm_ = 0;
   double lowest_mm_ = 0;
+  std::optional<LimitSearch> lattice_;
   std::vector<Pose> poses_;  // the lowest that can be taken apart; empty: the start
   ExactDisassembly plan_;    // of these
 };
@@ -216,7 +232,8 @@ std::optional<Packing> searched_freely(const PackProblem& problem, Packing packi
     std::vector<Pose> start;
     for (std::size_t i = 0; i < parts.size(); ++i)
       start.push_back(own_frame(parts[i].pose, *shapes[i]));
-    FreeSearch search(problem, shapes, start, random.bits(), pace);
+    const double trays_left = static_cast<double>(packing.trays.size()) - tray;
+    FreeSearch search(problem, shapes, start, 1 / trays_left, random.bits(), pace);
     if (!search.run()) {
       for (const int part : packing.removal_order)
         if (packing.parts[static_cast<std::size_t>(part)].tray == tray) order.push_back(part);

@@ -13,9 +13,11 @@ namespace {
 constexpr double kUnits = 62;        // of the limit
 constexpr double kCellsAcross = 45;  // a part, on average
 constexpr double kLeastCell_mm = 0.4;
-constexpr double kMostCells = 40000;  // of the base
-constexpr double kShrink = 0.995;     // the next limit
-constexpr double kDrawAgain = 0.93;   // when the limit fell by so much
+constexpr double kMostCells = 40000;    // of the base
+constexpr double kLeastShrink = 0.005;  // of the height, to the next limit
+constexpr double kMostShrink = 0.03;
+constexpr std::size_t kFewRounds = 100;  // after which the limit falls further than the last time
+constexpr double kDrawAgain = 0.93;      // when the limit fell by so much
 constexpr int kGreedyStarts = 6;
 constexpr int kMostMovedUnits = 3;      // where the lattice changes
 constexpr std::size_t kMostOthers = 5;  // taken out in a round
@@ -59,6 +61,7 @@ LimitSearch::LimitSearch(FreeParts parts, const Vec2& base_mm, double apart_mm,
       tray_(grid_),
       limit_mm_(start_height_mm + apart_mm),
       drawn_for_mm_(limit_mm_),
+      shrink_(kLeastShrink),
       puts_(parts_.shapes.size()),
       placed_(parts_.shapes.size(), 0),
       weight_(parts_.shapes.size(), 1) {
@@ -206,6 +209,7 @@ bool LimitSearch::next(const std::function<bool()>& is_over) {
 }
 
 void LimitSearch::round() {
+  ++rounds_;
   std::vector<int> taken = unplaced();
   std::vector<char> is_taken(puts_.size(), 0);
   double lacking = 0;
@@ -306,7 +310,9 @@ bool LimitSearch::put_back(int part, double noise_mm, double per_column_mm, doub
 
 void LimitSearch::lower_limit() {
   const double height = height_mm() + apart_mm_;
-  limit_mm_ = height * kShrink;
+  shrink_ = rounds_ < kFewRounds ? std::min(kMostShrink, 2 * shrink_) : kLeastShrink;
+  rounds_ = 0;
+  limit_mm_ = height * (1 - shrink_);
   std::fill(weight_.begin(), weight_.end(), 1.0);
   if (height < kDrawAgain * drawn_for_mm_) {
     drawn_for_mm_ = height;

@@ -31,7 +31,8 @@ class LimitSearch {
   double height_mm() const;
   std::vector<Pose> poses() const;
 
-  // Goes on a little below the height of the layout that was found.
+  // Goes on below the height of the layout that was found: a little, or further while layouts are
+  // found at once.
   void lower_limit();
   // Goes on at the same limit, with some parts to be put elsewhere.
   void take_out(const std::vector<int>& parts);
@@ -69,6 +70,8 @@ class LimitSearch {
   HeightBits tray_;
   double limit_mm_;  // with the room that parts keep from one another, as all heights here
   double drawn_for_mm_;
+  double shrink_;             // the next limit, of the height
+  std::size_t rounds_ = 0;    // since the limit was set
   std::vector<Put> puts_;     // by part
   std::vector<char> placed_;  // by part
   std::vector<double> size_;  // by part: large ones are put back first

@@ -9,33 +9,26 @@
 namespace packmerger {
 namespace {
 
-constexpr int kBand = 1;    // cells round a triangle's box in which its distance is taken at once
-constexpr int kSweeps = 2;  // of eight directions each
+constexpr int kBand = 1;  // cells round a triangle's box in which its distance is taken at once
 constexpr int kNoTriangle = -1;
-
-double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? std::clamp(along.dot(p - a) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * along).squaredNorm();
-}
 
 // The closest triangle of every sample, found in a narrow band and handed on from sample to
 // sample, as in the fast sweeping method (Zhao, 2005).
 class Closest {
  public:
   Closest(const Mesh& surface, const Vec3& low, double pitch, const std::array<int, 3>& size)
-      : surface_(surface), low_(low), pitch_(pitch), size_(size) {
+      : low_(low), pitch_(pitch), size_(size) {
     const std::size_t samples = static_cast<std::size_t>(size[0]) *
                                 static_cast<std::size_t>(size[1]) *
                                 static_cast<std::size_t>(size[2]);
     squared_.assign(samples, std::numeric_limits<double>::max());
     triangle_.assign(samples, kNoTriangle);
-    for (std::size_t i = 0; i < surface.n_triangles(); ++i) enter(static_cast<int>(i));
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-      for (int direction = 0; direction < 8; ++direction)
-        hand_on({(direction & 1) != 0 ? -1 : 1, (direction & 2) != 0 ? -1 : 1,
-                 (direction & 4) != 0 ? -1 : 1});
+    for (std::size_t i = 0; i < surface.n_triangles(); ++i)
+      triangles_.push_back(surface.corners(i));
+    for (std::size_t i = 0; i < triangles_.size(); ++i) enter(static_cast<int>(i));
+    for (int direction = 0; direction < 8; ++direction)
+      hand_on({(direction & 1) != 0 ? -1 : 1, (direction & 2) != 0 ? -1 : 1,
+               (direction & 4) != 0 ? -1 : 1});
   }
 
   double distance(std::size_t sample) const { return std::sqrt(squared_[sample]); }
@@ -50,7 +43,7 @@ class Closest {
 
   void offer(const std::array<int, 3>& at, std::size_t sample, int triangle) {
     const double squared = squared_distance(low_ + pitch_ * Vec3(at[0], at[1], at[2]),
-                                            surface_.corners(static_cast<std::size_t>(triangle)));
+                                            triangles_[static_cast<std::size_t>(triangle)]);
     if (squared >= squared_[sample]) return;
     squared_[sample] = squared;
     triangle_[sample] = triangle;
@@ -58,8 +51,7 @@ class Closest {
 
   void enter(int triangle) {
     Box3 box;
-    for (const Vec3& corner : surface_.corners(static_cast<std::size_t>(triangle)))
-      box.extend(corner);
+    for (const Vec3& corner : triangles_[static_cast<std::size_t>(triangle)]) box.extend(corner);
     std::array<int, 3> first{};
     std::array<int, 3> last{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -94,7 +86,7 @@ class Closest {
         }
   }
 
-  const Mesh& surface_;
+  std::vector<std::array<Vec3, 3>> triangles_;
   Vec3 low_;
   double pitch_;
   std::array<int, 3> size_;
@@ -104,18 +96,35 @@ class Closest {
 
 }  // namespace
 
+// By the region in which the point lies: of a corner, an edge or the face (Ericson, Real-Time
+// Collision Detection, 5.1.5).
 double squared_distance(const Vec3& p, const std::array<Vec3, 3>& triangle) {
   const auto& [a, b, c] = triangle;
-  const Vec3 normal = (b - a).cross(c - a);
-  const double area2 = normal.squaredNorm();
-  const bool above = area2 > 0 && normal.dot((b - a).cross(p - a)) >= 0 &&
-                     normal.dot((c - b).cross(p - b)) >= 0 && normal.dot((a - c).cross(p - c)) >= 0;
-  if (above) {
-    const double height = normal.dot(p - a);
-    return height * height / area2;
-  }
-  return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
-                   squared_distance_to_segment(p, c, a)});
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const Vec3 ap = p - a;
+  const double ab_a = ab.dot(ap);
+  const double ac_a = ac.dot(ap);
+  if (ab_a <= 0 && ac_a <= 0) return ap.squaredNorm();
+  const Vec3 bp = p - b;
+  const double ab_b = ab.dot(bp);
+  const double ac_b = ac.dot(bp);
+  if (ab_b >= 0 && ac_b <= ab_b) return bp.squaredNorm();
+  const double vc = ab_a * ac_b - ab_b * ac_a;
+  if (vc <= 0 && ab_a >= 0 && ab_b <= 0) return (ap - ab * (ab_a / (ab_a - ab_b))).squaredNorm();
+  const Vec3 cp = p - c;
+  const double ab_c = ab.dot(cp);
+  const double ac_c = ac.dot(cp);
+  if (ac_c >= 0 && ab_c <= ac_c) return cp.squaredNorm();
+  const double vb = ab_c * ac_a - ab_a * ac_c;
+  if (vb <= 0 && ac_a >= 0 && ac_c <= 0) return (ap - ac * (ac_a / (ac_a - ac_c))).squaredNorm();
+  const double va = ab_b * ac_c - ab_c * ac_b;
+  const double to_b = ab_c - ac_c;
+  const double to_c = ac_b - ab_b;
+  if (va <= 0 && to_c >= 0 && to_b >= 0)
+    return (bp - (c - b) * (to_c / (to_c + to_b))).squaredNorm();
+  const double sum = va + vb + vc;
+  return (ap - ab * (vb / sum) - ac * (vc / sum)).squaredNorm();
 }
 
 DistanceGrid::DistanceGrid(const Mesh& surface, double pitch_mm, double reach_mm)

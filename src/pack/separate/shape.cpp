@@ -10,7 +10,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kLeastPitch_mm = 0.5;
-constexpr double kCellsAcross = 80;
+constexpr double kCellsAcross = 60;
 constexpr double kSpacing_mm = 2;    // of the samples
 constexpr double kThinning = 0.7;    // of the spacing: no two samples share a cell of that size
 constexpr double kLeastBall_mm = 4;  // across
