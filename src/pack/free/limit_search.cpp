@@ -18,6 +18,9 @@ constexpr double kLeastShrink = 0.005;  // of the height, to the next limit
 constexpr double kMostShrink = 0.03;
 constexpr std::size_t kFewRounds = 100;  // after which the limit falls further than the last time
 constexpr double kDrawAgain = 0.93;      // when the limit fell by so much
+// Cut faces of segments stand at any angle to the model's axes. With many parts, twice the
+// rotations cost more rounds than they are worth.
+constexpr std::size_t kFewParts = 16;
 constexpr int kGreedyStarts = 6;
 constexpr int kMostMovedUnits = 3;      // where the lattice changes
 constexpr std::size_t kMostOthers = 5;  // taken out in a round
@@ -73,7 +76,11 @@ LimitSearch::LimitSearch(FreeParts parts, const Vec2& base_mm, double apart_mm,
       different_.push_back(shape);
       ways_.push_back(parts_.rotations);
     }
-    ways_[shape_of_.back()].push_back(start[i].linear());
+    std::vector<Mat3>& ways = ways_[shape_of_.back()];
+    if (parts_.shapes.size() > kFewParts)
+      ways.push_back(start[i].linear());
+    else
+      for (const Mat3& rotation : parts_.rotations) ways.push_back(rotation * start[i].linear());
     size_.push_back(shape->volume_mm3 * shape->radius_mm);
   }
   draw();

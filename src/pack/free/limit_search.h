@@ -14,7 +14,9 @@ namespace packmerger {
 // What the search is about. Parts that are copies of one another share their shape.
 struct FreeParts {
   std::vector<const Shape*> shapes;  // by part
-  std::vector<Mat3> rotations;       // that every part is tried in
+  // That every part is tried in, beside that of the start; few parts also in these after the
+  // start's.
+  std::vector<Mat3> rotations;
 };
 
 class LimitSearch {
