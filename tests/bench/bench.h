@@ -20,10 +20,8 @@ void add_pack(CLI::App& program);
 // The paper's figures and Table 1.
 void add_figures(CLI::App& program);
 
-// Mixed small parts on a square base at the least height, against the paper's packer.
-void add_many(CLI::App& program);
-void add_mixed(CLI::App& program);
-void add_nested(CLI::App& program);
+// The figures of docs/PACKING, each tray checked on its meshes.
+void add_packing_table(CLI::App& program);
 
 // The paper's packer, simple and slow, on a model's segments.
 void add_reference(CLI::App& program);

@@ -9,12 +9,10 @@ int main(int argc, char** argv) {
   packmerger::bench::add_cuts(program);
   packmerger::bench::add_kernels(program);
   packmerger::bench::add_link(program);
-  packmerger::bench::add_many(program);
-  packmerger::bench::add_mixed(program);
-  packmerger::bench::add_nested(program);
   packmerger::bench::add_partitions(program);
   packmerger::bench::add_figures(program);
   packmerger::bench::add_pack(program);
+  packmerger::bench::add_packing_table(program);
   packmerger::bench::add_reference(program);
   try {
     program.parse(argc, argv);

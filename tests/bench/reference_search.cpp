@@ -41,7 +41,9 @@ OrderSearch search_order(const std::vector<std::vector<ReferenceMaps>>& maps,
   cost.go_on = [&](int) { return !over(); };
   const TabuSettings settings{problem.tabu_memory, problem.tabu_patience, problem.tabu_samples,
                               random.bits()};
-  search.cost = tabu_search(start, search.cost, settings, cost).cost;
+  const FoundOrder found = tabu_search(start, search.cost, settings, cost);
+  search.order = found.order;
+  search.cost = found.cost;
   return search;
 }
 

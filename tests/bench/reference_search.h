@@ -16,7 +16,8 @@ struct SearchRound {
 };
 
 struct OrderSearch {
-  double cost = 0;   // of the best order
+  Order order;       // the best
+  double cost = 0;   // of it
   int packings = 0;  // that were made for it
   std::vector<SearchRound> rounds;
 };

@@ -1,0 +1,41 @@
+// What the table packs, each made anew from its seed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "job/divide.h"
+#include "model/packing.h"
+
+namespace packmerger::bench {
+
+// Where the least height is sought: rotations of 90 degrees, cells of 1 mm.
+PackProblem height_problem(std::vector<PackItem> items, const Vec3& build_mm, double gap_mm);
+
+// 28 small parts (mixed_parts.h) on 100 x 100 mm, no gap.
+PackProblem mixed_problem(std::uint64_t instance);
+
+// 60 functional parts (functional_parts.h) on 150 x 110 mm, 1 mm apart.
+PackProblem functional_problem(std::uint64_t instance);
+
+// The six patches that the faces of a cube cut out of a shell, 50 mm in radius and 3 mm thick, on
+// 72 x 72 mm, no gap. At best they lie in one another as bowls do, nested_height_mm() high.
+PackProblem nested_problem();
+double nested_height_mm();
+
+// `count` boats (hull_part.h) for a volume of 165 x 165 x 320 mm, 1 mm apart.
+PackProblem hull_problem(int count);
+
+// The parts of the bunny, 100 mm long, divided into eight by default for objet30, as its job has
+// them, on 110 x 110 mm, 1 mm apart. Throws what bunny_model() throws.
+PackProblem bunny_parts_problem();
+
+// The model divided by planes for this printer by the plan that promises least, whatever packs
+// best, so that it is the same whoever packs it.
+std::shared_ptr<const Divided> planned_division(const Mesh& model, const Profile& profile);
+
+// `count` parts by the default settings of objet30: all different (the mixed parts at scales of
+// their own), or copies of one bracket.
+PackProblem growth_problem(int count, bool all_alike, std::uint64_t instance);
+
+}  // namespace packmerger::bench
