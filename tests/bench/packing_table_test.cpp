@@ -8,6 +8,7 @@
 
 #include "base/files.h"
 #include "base/process/process.h"
+#include "bench/models.h"
 #include "bench/packing_table/functional_parts.h"
 #include "bench/packing_table/hull_part.h"
 #include "bench/packing_table/instances.h"
@@ -16,6 +17,7 @@
 #include "bench/packing_table/summary.h"
 #include "bench/packing_table/tray_check.h"
 #include "bench/packing_table/tray_rows.h"
+#include "fixtures/profiles.h"
 #include "shape/surface/repair.h"
 #include "unit/pack/shapes.h"
 
@@ -72,6 +74,12 @@ TEST(HullPart, IsOneClosedBodyOfTheStatedSize) {
   EXPECT_NEAR(volume_mm3(hull), 15500, 100);
   // Two windows and a door make two handles: the cabin's room is one with what is outside.
   EXPECT_EQ(euler(hull), 2 - 2 * 2);
+}
+
+TEST(PlannedDivision, IsByClustersWhereNoPlanesDivide) {
+  Profile profile = fixtures::shipped_profile("objet30");
+  profile.shape.voxel_mm = 2;  // fewer tetrahedra
+  EXPECT_GT(planned_division(molecule_model(), profile)->segments.count, 1);
 }
 
 PackProblem two_boxes(double gap_mm) {

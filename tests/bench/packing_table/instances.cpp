@@ -110,6 +110,10 @@ std::shared_ptr<const Divided> planned_division(const Mesh& model, const Profile
   search.part_price_mm3 = kPartPrice * total_volume_mm3(divided->tets);
   const BuildVolume build = build_volume(profile);
   const auto plans = cut_plans(divided->tets, profile.shape, build, search, 1, Progress());
+  if (plans.empty()) {
+    divide_by_clusters(*divided, profile, 1, warnings, Progress());
+    return divided;
+  }
   const Segments cut = cut_as_planned(divided->tets, plans.front(), Progress());
   divided->clusters = cut.count;
   divided->segments = premerge(divided->tets, cut, profile.shape, build, warnings, Progress());

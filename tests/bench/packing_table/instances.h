@@ -30,8 +30,8 @@ PackProblem hull_problem(int count);
 // them, on 110 x 110 mm, 1 mm apart. Throws what bunny_model() throws.
 PackProblem bunny_parts_problem();
 
-// The model divided by planes for this printer by the plan that promises least, whatever packs
-// best, so that it is the same whoever packs it.
+// The model divided for this printer by the planes that promise least support, or into the paper's
+// clusters where no planes divide it: the same whoever packs it, because nobody packs on trial.
 std::shared_ptr<const Divided> planned_division(const Mesh& model, const Profile& profile);
 
 // `count` parts by the default settings of objet30: all different (the mixed parts at scales of
