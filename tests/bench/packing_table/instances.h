@@ -26,8 +26,8 @@ double nested_height_mm();
 // `count` boats (hull_part.h) for a volume of 165 x 165 x 320 mm, 1 mm apart.
 PackProblem hull_problem(int count);
 
-// The parts of the bunny, 100 mm long, divided into eight by default for objet30, as its job has
-// them, on 110 x 110 mm, 1 mm apart. Throws what bunny_model() throws.
+// The parts of the bunny, 100 mm long, as its job for objet30 has them where eight are
+// asked for, on 110 x 110 mm, 1 mm apart. Throws what bunny_model() throws.
 PackProblem bunny_parts_problem();
 
 // The model divided for this printer by the planes that promise least support, or into the paper's

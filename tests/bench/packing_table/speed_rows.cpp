@@ -38,11 +38,15 @@ class MemorySweep {
 
  private:
   static constexpr std::size_t kWords = std::size_t{64} << 20;  // of 8 bytes
+  static constexpr std::size_t kLine = 8;                       // words that are fetched together
 
   void sweep() {
     std::vector<std::uint64_t> memory(kWords);
     while (!done_)
-      for (std::size_t i = 0; i < memory.size() && !done_; ++i) memory[i] += i;
+      for (std::size_t i = 0; i < memory.size() && !done_; i += kLine) {
+        volatile std::uint64_t& word = memory[i];  // nobody reads it, but it shall be written
+        word = word + 1;
+      }
   }
 
   std::atomic<bool> done_ = false;

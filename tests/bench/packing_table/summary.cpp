@@ -32,6 +32,13 @@ constexpr std::array kShown{
     Shown{"peak_memory_mb", "memory", " MB", 0},
     Shown{"packing_ms", "ours", " ms", 0},
     Shown{"reference_s", "the paper's", " s", 0},
+    Shown{"one_packing_ratio", "times faster", "", 0},
+    Shown{"search_ratio", "times faster", "", 1},
+    Shown{"search_with_gap_ratio", "with the gap", "", 1},
+    Shown{"slower_beside_a_sweep", "beside a sweep of memory ×", "", 2},
+    Shown{"kernel_fraction", "kernel", "", 2},
+    Shown{"time_ratio", "time ÷ solid", "", 2},
+    Shown{"support_ratio", "support ÷ solid", "", 3},
 };
 
 Shown shown(std::string_view key) {
@@ -43,8 +50,9 @@ Shown shown(std::string_view key) {
 // Median and range of one value of all runs.
 std::string spread(const std::vector<double>& values, int digits, std::string_view unit) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  std::string text = fmt::format("{:.{}f}{}", median(values), digits, unit);
-  if (values.size() > 1) text += fmt::format(" ({:.{}f}–{:.{}f})", *least, digits, *most, digits);
+  const auto told = [digits](double value) { return fmt::format("{:.{}f}", value, digits); };
+  std::string text = told(median(values)) + std::string(unit);
+  if (told(*least) != told(*most)) text += fmt::format(" ({}–{})", told(*least), told(*most));
   return text;
 }
 

@@ -12,7 +12,7 @@ namespace packmerger::bench {
 // Of an even number of values the mean of the middle two. At least one value.
 double median(std::vector<double> values);
 
-// "height 42.0 mm (41.2–44.8)" for each figure of the runs; a single run has no range.
+// "height 42.0 mm (41.2–44.8)" for each figure of the runs; none where all are told alike.
 std::string figures_text(const std::vector<nlohmann::ordered_json>& runs);
 
 // What the checks of all runs say together: "apart 0.017 mm, 23 straight up, 5 by a path"; what is
