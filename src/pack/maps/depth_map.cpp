@@ -109,6 +109,40 @@ struct CellRange {
   int holding(double where) const { return std::clamp(static_cast<int>(where), first, last); }
 };
 
+// The number of cells whose centres lie at or below `where`: of a triangle's two sides one owns the
+// centres exactly on it.
+int centres_up_to(double where) {
+  const int cell = static_cast<int>(where);
+  return where - cell >= 0.5 ? cell + 1 : cell;  // exact, unlike rounding where + 0.5
+}
+
+// The triangles that lie over some centre along x and along y; small ones mostly do not. Told
+// without branches, which would be as good as random.
+std::vector<int> triangles_over_centres(const Mesh& surface, const std::vector<CellPoint>& points) {
+  struct Passed {  // centres along both axes
+    int columns;
+    int rows;
+  };
+  std::vector<Passed> passed;
+  passed.reserve(points.size());
+  for (const CellPoint& point : points)
+    passed.push_back({centres_up_to(point.x), centres_up_to(point.y)});
+  std::vector<int> found(surface.triangles().size());
+  std::size_t count = 0;
+  int index = 0;
+  for (const auto& [a, b, c] : surface.triangles()) {
+    const Passed& p = passed[static_cast<std::size_t>(a)];
+    const Passed& q = passed[static_cast<std::size_t>(b)];
+    const Passed& r = passed[static_cast<std::size_t>(c)];
+    const int columns = (p.columns ^ q.columns) | (p.columns ^ r.columns);
+    const int rows = (p.rows ^ q.rows) | (p.rows ^ r.rows);
+    found[count] = index++;
+    count += static_cast<std::size_t>((columns != 0) & (rows != 0));
+  }
+  found.resize(count);
+  return found;
+}
+
 class Rasterizer {
  public:
   Rasterizer(DepthMaps& maps, double grid, double normal_limit)
@@ -133,20 +167,33 @@ class Rasterizer {
 
   // Into `bottom`, `roof` and `hangs`.
   void enter_centres(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
-    if (centres_up_to(std::min({a.x, b.x, c.x})) == centres_up_to(std::max({a.x, b.x, c.x})) ||
-        centres_up_to(std::min({a.y, b.y, c.y})) == centres_up_to(std::max({a.y, b.y, c.y})))
-      return;
-    enter_rows(a, b, c);
+    const Vec3 normal =
+        Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
+    if (normal.z() == 0) return;
+    // Steep facets are steeper still after rounding, but their heights remain theirs.
+    const double low = std::min({a.z, b.z, c.z});
+    const double high = std::max({a.z, b.z, c.z});
+    const double slope_x = -normal.x() / normal.z();
+    const double slope_y = -normal.y() / normal.z();
+    const auto hangs = [&] {
+      const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
+      return static_cast<std::uint8_t>(in_mm.z() < normal_limit_ * in_mm.norm() ? 1 : 0);
+    };
+    const SortedTriangle<&CellPoint::y, &CellPoint::x> sorted(a, b, c);
+    const int end = centres_up_to(sorted.last->y);
+    for (int row = centres_up_to(sorted.first->y); row < end; ++row) {
+      const double y = row + 0.5;
+      const double left = sorted.long_side(y).across;
+      const double right = sorted.short_sides(y).across;
+      const int last = centres_up_to(std::max(left, right));
+      for (int column = centres_up_to(std::min(left, right)); column < last; ++column) {
+        const double z = a.z + slope_x * (column + 0.5 - a.x) + slope_y * (y - a.y);
+        enter_centre(at(maps_, column, row), static_cast<float>(std::clamp(z, low, high)), hangs);
+      }
+    }
   }
 
  private:
-  // The number of cells whose centres lie at or below `where`: of a triangle's two sides one owns
-  // the centres exactly on it.
-  static int centres_up_to(double where) {
-    const int cell = static_cast<int>(where);
-    return where - cell >= 0.5 ? cell + 1 : cell;  // exact, unlike rounding where + 0.5
-  }
-
   void enter_bounds(std::size_t cell, double low, double high) {
     maps_.low[cell] = std::min(maps_.low[cell], static_cast<float>(low));
     maps_.top[cell] = std::max(maps_.top[cell], static_cast<float>(high));
@@ -182,33 +229,6 @@ class Rasterizer {
     }
   }
 
-  void enter_rows(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
-    const Vec3 normal =
-        Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
-    if (normal.z() == 0) return;
-    // Steep facets are steeper still after rounding, but their heights remain theirs.
-    const double low = std::min({a.z, b.z, c.z});
-    const double high = std::max({a.z, b.z, c.z});
-    const double slope_x = -normal.x() / normal.z();
-    const double slope_y = -normal.y() / normal.z();
-    const auto hangs = [&] {
-      const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
-      return static_cast<std::uint8_t>(in_mm.z() < normal_limit_ * in_mm.norm() ? 1 : 0);
-    };
-    const SortedTriangle<&CellPoint::y, &CellPoint::x> sorted(a, b, c);
-    const int end = centres_up_to(sorted.last->y);
-    for (int row = centres_up_to(sorted.first->y); row < end; ++row) {
-      const double y = row + 0.5;
-      const double left = sorted.long_side(y).across;
-      const double right = sorted.short_sides(y).across;
-      const int last = centres_up_to(std::max(left, right));
-      for (int column = centres_up_to(std::min(left, right)); column < last; ++column) {
-        const double z = a.z + slope_x * (column + 0.5 - a.x) + slope_y * (y - a.y);
-        enter_centre(at(maps_, column, row), static_cast<float>(std::clamp(z, low, high)), hangs);
-      }
-    }
-  }
-
   // hangs() is asked for the lowest only.
   template <typename Hangs>
   void enter_centre(std::size_t cell, float z, const Hangs& hangs) {
@@ -228,13 +248,15 @@ DepthMaps drawn(const Mesh& surface, double grid_mm, double support_angle) {
   DepthMaps maps = empty_maps_around(surface, grid_mm);
   const std::vector<CellPoint> points = in_cells(surface.points(), grid_mm, maps);
   Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
-  for (const auto& triangle : surface.triangles()) {
-    const CellPoint& a = points[static_cast<std::size_t>(triangle[0])];
-    const CellPoint& b = points[static_cast<std::size_t>(triangle[1])];
-    const CellPoint& c = points[static_cast<std::size_t>(triangle[2])];
-    if constexpr (kExtents) rasterizer.enter_extent(a, b, c);
-    rasterizer.enter_centres(a, b, c);
-  }
+  const auto corner = [&](int triangle, std::size_t i) -> const CellPoint& {
+    const auto& corners = surface.triangles()[static_cast<std::size_t>(triangle)];
+    return points[static_cast<std::size_t>(corners[i])];
+  };
+  if constexpr (kExtents)
+    for (int t = 0; t < static_cast<int>(surface.triangles().size()); ++t)
+      rasterizer.enter_extent(corner(t, 0), corner(t, 1), corner(t, 2));
+  for (const int t : triangles_over_centres(surface, points))
+    rasterizer.enter_centres(corner(t, 0), corner(t, 1), corner(t, 2));
   return maps;
 }
 
