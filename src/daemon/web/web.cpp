@@ -159,10 +159,7 @@ HttpReply Web::upload_rules() const {
   json formats = json::array();
   for (const FileFormat& format : file_formats()) endings.push_back(format.ending);
   for (const bool programs : {false, true})
-    for (const FileFormat& format : file_formats())
-      if (is_program(format.kind) == programs &&
-          std::find(formats.begin(), formats.end(), format.name) == formats.end())
-        formats.push_back(format.name);
+    for (const std::string_view name : format_names(programs)) formats.push_back(name);
   HttpReply reply;
   reply.body = json{{"most_bytes", config_.most_upload_bytes},
                     {"endings", std::move(endings)},

@@ -30,11 +30,7 @@ bool ends_in(std::string_view name, std::string_view ending) {
 }
 
 std::string names_of(bool programs, std::string_view last) {
-  std::vector<std::string_view> names;
-  for (const FileFormat& format : kFormats)
-    if (is_program(format.kind) == programs &&
-        std::find(names.begin(), names.end(), format.name) == names.end())
-      names.push_back(format.name);
+  const std::vector<std::string_view> names = format_names(programs);
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i > 0) text += i + 1 == names.size() ? last : ", ";
@@ -54,6 +50,15 @@ const FileFormat* format_of_name(std::string_view name) {
         (found == nullptr || format.ending.size() > found->ending.size()))
       found = &format;
   return found;
+}
+
+std::vector<std::string_view> format_names(bool programs) {
+  std::vector<std::string_view> names;
+  for (const FileFormat& format : kFormats)
+    if (is_program(format.kind) == programs &&
+        std::find(names.begin(), names.end(), format.name) == names.end())
+      names.push_back(format.name);
+  return names;
 }
 
 std::string model_format_names(std::string_view last) { return names_of(false, last); }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace packmerger {
 
@@ -47,8 +48,9 @@ inline FileKind kind_of_file(std::string_view name) {
 }
 inline bool is_program(std::string_view name) { return is_program(kind_of_file(name)); }
 
-// The names of the models' formats, or of the programs', each once: "STL, OBJ, PLY, OFF, 3MF"; with
-// last " or ": "STL, OBJ, PLY, OFF or 3MF".
+// The names of the models' formats, or of the programs', each once; as a text "STL, OBJ, PLY, OFF,
+// 3MF", with last " or " "STL, OBJ, PLY, OFF or 3MF".
+std::vector<std::string_view> format_names(bool programs);
 std::string model_format_names(std::string_view last = ", ");
 std::string program_format_names(std::string_view last = ", ");
 

@@ -9,7 +9,7 @@ const machine = (name, more) => `base = "marlin"\nname = "${name}"\n${more}`;
 const FILES = {
   'dear.toml': machine('A dear machine', '[cost]\nmachine_price_per_h = 50\n'),
   'fair.toml': machine('A fair machine', '[cost]\nmachine_price_per_h = 1\n'),
-  'tiny.toml': machine('A tiny machine', 'build_mm = [20, 20, 20]\n'),
+  'tiny.toml': machine('A tiny machine', 'build_mm = [12, 12, 12]\n'),
 };
 // A pyramid: the comparison of every printer has little to do.
 const PYRAMID = 'v 0 0 0\nv 40 0 0\nv 40 40 0\nv 0 40 0\nv 20 20 30\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n';
@@ -19,7 +19,7 @@ profile = "${name}.toml"
 port = "${ports[name]}"
 simulated = true
 variant = "solid"
-`).join('') + '[printer.any]\nprofile = "auto"\nsize_mm = 40\n';
+`).join('') + '[printer.any]\nprofile = "auto"\nsize_mm = 22\n';
 
 describe('a proposal', { skip: missing }, () => {
   let shop;

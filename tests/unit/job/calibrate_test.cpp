@@ -115,7 +115,7 @@ void scatter(std::vector<CalibrationPrint>& prints, double spread, std::uint32_t
 TEST(PrintTerms, GiveWhatTheEstimatorGives) {
   EXPECT_TRUE(rc::check([] {
     const Profile profile = *rc::gen::arbitrary<bool>() ? any_polyjet() : any_deposition();
-    const Block block{Vec3(any_between(1, 90), any_between(1, 90), any_between(1, 90)),
+    const Block block{Vec3(any_between(1, 40), any_between(1, 40), any_between(1, 40)),
                       any_between(0, 5)};
     const std::vector<Tray> trays(static_cast<std::size_t>(*rc::gen::inRange(1, 4)),
                                   tray_of(block));
@@ -141,7 +141,7 @@ TEST(LinearEstimate, EstimatePackerAndCalibrationAgree) {
     truth.cost.machine_price_per_h = any_between(0, 50);
     truth.cost.labour_price_per_h = any_between(0, 50);
     const Block block{
-        Vec3(any_between(1, 90), any_between(1, 90), truth.layer_mm * *rc::gen::inRange(1, 100)),
+        Vec3(any_between(1, 40), any_between(1, 40), truth.layer_mm * *rc::gen::inRange(1, 100)),
         truth.layer_mm * *rc::gen::inRange(1, 10)};
     const Estimate whole = estimate(truth, {tray_of(block)}, {1, 0}, Progress());
     const Vec3 box = block.size_mm + Vec3(0, 0, block.lift_mm);
