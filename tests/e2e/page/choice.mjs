@@ -19,6 +19,7 @@ profile = "${name}.toml"
 port = "${ports[name]}"
 simulated = true
 variant = "solid"
+split = false
 `).join('') + '[printer.any]\nprofile = "auto"\nsize_mm = 22\n';
 
 describe('a proposal', { skip: missing }, () => {
