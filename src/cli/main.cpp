@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/names.h"
 #include "base/nearest.h"
+#include "base/process/end_at_once.h"
 #include "cli/verb.h"
 
 namespace {
@@ -20,8 +21,10 @@ using packmerger::did_you_mean;
 using packmerger::Error;
 using packmerger::Fault;
 using packmerger::printable_lines;
+using packmerger::yield_to_an_end;
 
 int report(const Error& error) {
+  yield_to_an_end();
   std::cerr << "error: " << printable_lines(error.what()) << ".\n";
   if (!error.hint().empty()) std::cerr << "hint: " << printable_lines(error.hint()) << "\n";
   return error.exit_code();

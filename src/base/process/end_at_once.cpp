@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <set>
@@ -22,6 +23,8 @@ constexpr std::chrono::milliseconds kPatience{500};
 constexpr std::chrono::milliseconds kPause{10};
 constexpr int kAttempts = 30;  // other threads may still be writing there
 
+std::atomic<bool> has_begun{false};
+
 bool are_gone(const std::set<fs::path>& folders) {
   return std::all_of(folders.begin(), folders.end(), [](const fs::path& folder) {
     std::error_code ignored;
@@ -33,6 +36,7 @@ bool are_gone(const std::set<fs::path>& folders) {
 }  // namespace
 
 void end_without_remains(int exit_code) {
+  has_begun = true;
   Remains& all = remains();
   // Held to the end, so that no process is started any more, and nothing half removed is moved to
   // its place.
@@ -42,6 +46,10 @@ void end_without_remains(int exit_code) {
       std::this_thread::sleep_for(kPause);
   }
   ::_exit(exit_code);
+}
+
+void yield_to_an_end() {
+  while (has_begun) ::pause();
 }
 
 }  // namespace packmerger

@@ -33,15 +33,14 @@ TEST(Remains, GoWithTheProgramWhateverItIsDoing) {
     ProcessSpec spec;
     spec.argv = {"sh", "-c", "trap '' TERM; echo $$ > " + pid_file.string() + "; sleep 600"};
     const ChildProcess child(spec);
-    std::thread(
-        [&] {  // its folder vanishes under it: it must neither save that nor end the program
-          for (int i = 0;; ++i) try {
-              write_file_whole(folder.path() / std::to_string(i), "busy");
-            } catch (const Error&) {
-              std::this_thread::yield();
-            }
-        })
-        .detach();
+    std::thread([&] {
+      try {
+        for (int i = 0;; ++i) write_file_whole(folder.path() / std::to_string(i), "busy");
+      } catch (const Error&) {  // its folder vanished; it would end the program by a signal
+        yield_to_an_end();
+        throw;
+      }
+    }).detach();
     while (!fs::exists(pid_file) || fs::file_size(pid_file) == 0) std::this_thread::yield();
     end_without_remains(130);
   };
