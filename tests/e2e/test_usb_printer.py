@@ -30,7 +30,7 @@ class UsbPrinter(unittest.TestCase):
         cls.job = cls.folder / "job"
         result = program.run("prepare", model, "--profile", "objet30", "--no-split", "--no-hollow", "--out", cls.job,
                              "--set", "dialect=usb", "--set", "document=tray_3mf", "--set", "link.usb_ids=0525:a4a8",
-                             "--set", "link.machine=print bridge", "--set", "link.timeout_s=2")
+                             "--set", "link.machine=print bridge", "--set", "link.timeout_s=5")
         assert result.code == 0, result
         cls.document = (cls.job / "tray.3mf").read_bytes()
 
