@@ -50,8 +50,8 @@ struct PackProblem {
   int tabu_patience = 10;  // rounds without a better layout before the search starts afresh
   int tabu_restarts = 2;   // without a better layout before the search ends
   int tabu_samples = 6;    // moves tried in one round
-  // After the search, parts are taken out and put back wherever they fit, in cavities and under
-  // overhangs too, with a proven way out. Takes long where parts are large.
+  // After the search, parts are put wherever they fit, in cavities and under overhangs too, with a
+  // proven way out. Takes long where parts are large or many.
   bool anywhere = false;
   int most_parts = 0;   // merging goes on until there are no more, if it can; 0: as it pays
   double budget_s = 0;  // 0: until the search ends by itself

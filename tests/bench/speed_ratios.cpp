@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "bench/fast_packing.h"
 #include "bench/kernels.h"
+#include "bench/packing_table/summary.h"
 #include "bench/reference_problem.h"
 #include "bench/reference_search.h"
 #include "bench/stopwatch.h"
@@ -27,11 +28,6 @@ constexpr double kSearchStep_deg = 90;
 constexpr std::size_t kMostSearched = 12;  // parts: more take the reference hours
 constexpr int kMostSeeds = 10;
 constexpr int kRepetitions = 5;  // the median counts; the reference's search is run once
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 void require_same(const ReferencePacking& expected, const ReferencePacking& found) {
   const auto same = [](const ReferencePlacement& a, const ReferencePlacement& b) {

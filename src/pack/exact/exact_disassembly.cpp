@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <set>
 
 #include "base/parallel.h"
 #include "pack/exact/sweep.h"
@@ -118,7 +118,7 @@ class Dismantler {
   // Best first: the highest place, of several the one that was found first.
   std::optional<std::vector<Vec3>> path_of(int part, std::size_t most_places) {
     std::vector<Place> places{{}};
-    std::map<Lattice, bool> seen{{{}, true}};
+    std::set<Lattice> seen{Lattice{}};
     using Open = std::pair<int, int>;  // height, and less the index of the place
     std::priority_queue<Open> open;
     open.push({0, 0});
@@ -136,7 +136,7 @@ class Dismantler {
         for (const int sign : {1, -1}) {
           Lattice next = at;
           next[axis] += sign;
-          if (!seen.emplace(next, true).second) continue;
+          if (!seen.insert(next).second) continue;
           const Vec3 end = moved_mm(next);
           if (!is_free(part, (moved_mm(at) + end) / 2) || !is_free(part, end)) continue;
           open.push({next[2], -static_cast<int>(places.size())});

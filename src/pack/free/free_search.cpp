@@ -210,7 +210,7 @@ class FreeSearch {
 void let_down(std::vector<Pose>& poses, const std::vector<std::shared_ptr<const Shape>>& shapes) {
   double lowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < poses.size(); ++i)
-    lowest = std::min(lowest, box_at(*shapes[i], poses[i]).min().z());
+    lowest = std::min(lowest, shapes[i]->surface.box(poses[i]).min().z());
   for (Pose& pose : poses) pose.translation().z() -= lowest;
 }
 

@@ -44,7 +44,7 @@ std::vector<BitRun> spread(const std::vector<BitRun>& runs) {
 BitPart bit_part(const Shape& shape, const Mat3& rotation, const BitGrid& grid, double apart_mm) {
   Pose turn = Pose::Identity();
   turn.linear() = rotation;
-  Box3 box = box_at(shape, turn);
+  Box3 box = shape.surface.box(turn);
   const Vec3 growth = Vec3::Constant(apart_mm / 2);
   box = Box3(box.min() - growth, box.max() + growth);
   BitPart part;

@@ -122,19 +122,15 @@ void LimitSearch::begin(const std::vector<Pose>& start) {
   double height = limit_mm_;
   for (int i = 0; i < kGreedyStarts; ++i) {
     if (!greedy(i == 0)) continue;
-    double top = 0;
-    for (std::size_t part = 0; part < puts_.size(); ++part)
-      top = std::max(top, top_mm(static_cast<int>(part)));
+    const double top = highest_mm();
     if (top >= height) continue;
     height = top;
     best = puts_;
   }
-  std::vector<int> all(puts_.size());
-  std::iota(all.begin(), all.end(), 0);
   if (!best.empty()) {
     tray_ = HeightBits(grid_);
     puts_ = best;
-    for (const int part : all) fill(part);
+    for (std::size_t i = 0; i < puts_.size(); ++i) fill(static_cast<int>(i));
     return;
   }
   std::vector<Put> puts(puts_.size());
@@ -156,7 +152,7 @@ void LimitSearch::begin(const std::vector<Pose>& start) {
          std::clamp(cell(at.y(), grid_.cell_mm), 0, std::max(0, grid_.rows - ways[nearest].depth)),
          cell(at.z(), grid_.unit_mm)}};
   }
-  put_nearest(all, puts, grid_.unit_mm);
+  put_nearest(puts, grid_.unit_mm);
 }
 
 bool LimitSearch::greedy(bool largest_first) {
@@ -175,10 +171,11 @@ bool LimitSearch::greedy(bool largest_first) {
 }
 
 // Where they were, as high as they were or nearly so; what has no room there stays out.
-void LimitSearch::put_nearest(std::vector<int> parts, const std::vector<Put>& puts,
-                              double old_unit_mm) {
+void LimitSearch::put_nearest(const std::vector<Put>& puts, double old_unit_mm) {
   tray_ = HeightBits(grid_);
   std::fill(placed_.begin(), placed_.end(), 0);
+  std::vector<int> parts(puts.size());
+  std::iota(parts.begin(), parts.end(), 0);
   std::stable_sort(parts.begin(), parts.end(), [&](int a, int b) {
     return puts[static_cast<std::size_t>(a)].place.z < puts[static_cast<std::size_t>(b)].place.z;
   });
@@ -278,8 +275,11 @@ void LimitSearch::round() {
 
 std::vector<int> LimitSearch::neighbours(std::size_t count, const std::vector<char>& taken) {
   std::vector<std::pair<double, int>> rated;
-  const Vec3 point(random_.unit() * base_mm_.x(), random_.unit() * base_mm_.y(),
-                   random_.unit() * limit_mm_);
+  // One after the other: compilers differ in which argument of a call they draw first.
+  Vec3 point;
+  point.z() = random_.unit() * limit_mm_;
+  point.y() = random_.unit() * base_mm_.y();
+  point.x() = random_.unit() * base_mm_.x();
   const bool near = random_.unit() < kNearShare;
   for (std::size_t i = 0; i < puts_.size(); ++i) {
     if (taken[i] != 0) continue;
@@ -316,7 +316,7 @@ bool LimitSearch::put_back(int part, double noise_mm, double per_column_mm, doub
 }
 
 void LimitSearch::lower_limit() {
-  const double height = height_mm() + apart_mm_;
+  const double height = highest_mm();
   shrink_ = rounds_ < kFewRounds ? std::min(kMostShrink, 2 * shrink_) : kLeastShrink;
   rounds_ = 0;
   limit_mm_ = height * (1 - shrink_);
@@ -326,9 +326,7 @@ void LimitSearch::lower_limit() {
     const double old_unit_mm = grid_.unit_mm;
     grid_.unit_mm = height / kUnits;
     draw();
-    std::vector<int> all(puts_.size());
-    std::iota(all.begin(), all.end(), 0);
-    put_nearest(all, std::vector<Put>(puts_), old_unit_mm);
+    put_nearest(std::vector<Put>(puts_), old_unit_mm);
     return;
   }
   for (std::size_t i = 0; i < puts_.size(); ++i)
@@ -363,12 +361,14 @@ double LimitSearch::top_mm(int part) const {
   return place.z * grid_.unit_mm + drawn(part, way).height_mm;
 }
 
-double LimitSearch::height_mm() const {
-  double height = 0;
+double LimitSearch::highest_mm() const {
+  double highest = 0;
   for (std::size_t i = 0; i < puts_.size(); ++i)
-    height = std::max(height, top_mm(static_cast<int>(i)));
-  return height - apart_mm_;
+    highest = std::max(highest, top_mm(static_cast<int>(i)));
+  return highest;
 }
+
+double LimitSearch::height_mm() const { return highest_mm() - apart_mm_; }
 
 Vec3 LimitSearch::middle(int part) const { return pose(part).translation(); }
 

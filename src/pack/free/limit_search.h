@@ -48,7 +48,7 @@ class LimitSearch {
   void draw();
   void begin(const std::vector<Pose>& start);
   bool greedy(bool largest_first);
-  void put_nearest(std::vector<int> parts, const std::vector<Put>& puts, double old_unit_mm);
+  void put_nearest(const std::vector<Put>& puts, double old_unit_mm);
   void round();
   std::vector<int> neighbours(std::size_t count, const std::vector<char>& taken);
   bool put_back(int part, double noise_mm, double per_column_mm, double per_row_mm, double share);
@@ -56,6 +56,7 @@ class LimitSearch {
   void clear(int part);
   const BitPart& drawn(int part, std::size_t way) const;
   double top_mm(int part) const;
+  double highest_mm() const;
   Vec3 middle(int part) const;
   Pose pose(int part) const;
   std::vector<int> unplaced() const;

@@ -12,15 +12,21 @@ namespace {
 constexpr int kBand = 1;  // cells round a triangle's box in which its distance is taken at once
 constexpr int kNoTriangle = -1;
 
+// Of a sample, x fastest; size: samples along each axis.
+std::size_t index_of(const std::array<int, 3>& at, const std::array<int, 3>& size) {
+  return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
+          static_cast<std::size_t>(at[1])) *
+             static_cast<std::size_t>(size[0]) +
+         static_cast<std::size_t>(at[0]);
+}
+
 // The closest triangle of every sample, found in a narrow band and handed on from sample to
 // sample, as in the fast sweeping method (Zhao, 2005).
 class Closest {
  public:
   Closest(const Mesh& surface, const Vec3& low, double pitch, const std::array<int, 3>& size)
       : low_(low), pitch_(pitch), size_(size) {
-    const std::size_t samples = static_cast<std::size_t>(size[0]) *
-                                static_cast<std::size_t>(size[1]) *
-                                static_cast<std::size_t>(size[2]);
+    const std::size_t samples = index_of({0, 0, size[2]}, size);
     squared_.assign(samples, std::numeric_limits<double>::max());
     triangle_.assign(samples, kNoTriangle);
     for (std::size_t i = 0; i < surface.n_triangles(); ++i)
@@ -34,13 +40,6 @@ class Closest {
   double distance(std::size_t sample) const { return std::sqrt(squared_[sample]); }
 
  private:
-  std::size_t index(const std::array<int, 3>& at) const {
-    return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size_[1]) +
-            static_cast<std::size_t>(at[1])) *
-               static_cast<std::size_t>(size_[0]) +
-           static_cast<std::size_t>(at[0]);
-  }
-
   void offer(const std::array<int, 3>& at, std::size_t sample, int triangle) {
     const double squared = squared_distance(low_ + pitch_ * Vec3(at[0], at[1], at[2]),
                                             triangles_[static_cast<std::size_t>(triangle)]);
@@ -64,7 +63,7 @@ class Closest {
     std::array<int, 3> at{};
     for (at[2] = first[2]; at[2] <= last[2]; ++at[2])
       for (at[1] = first[1]; at[1] <= last[1]; ++at[1])
-        for (at[0] = first[0]; at[0] <= last[0]; ++at[0]) offer(at, index(at), triangle);
+        for (at[0] = first[0]; at[0] <= last[0]; ++at[0]) offer(at, index_of(at, size_), triangle);
   }
 
   void hand_on(const std::array<int, 3>& step) {
@@ -74,12 +73,12 @@ class Closest {
     for (at[2] = begin(2); within(2); at[2] += step[2])
       for (at[1] = begin(1); within(1); at[1] += step[1])
         for (at[0] = begin(0); within(0); at[0] += step[0]) {
-          const std::size_t sample = index(at);
+          const std::size_t sample = index_of(at, size_);
           for (std::size_t k = 0; k < 3; ++k) {
             if (at[k] == begin(k)) continue;
             std::array<int, 3> before = at;
             before[k] -= step[k];
-            const int triangle = triangle_[index(before)];
+            const int triangle = triangle_[index_of(before, size_)];
             if (triangle != kNoTriangle && triangle != triangle_[sample])
               offer(at, sample, triangle);
           }
@@ -140,7 +139,7 @@ DistanceGrid::DistanceGrid(const Mesh& surface, double pitch_mm, double reach_mm
     high_[axis] = low_[axis] + pitch_ * static_cast<float>(size_[k] - 1);
   }
   const Closest closest(surface, low, pitch, size_);
-  distance_.resize(index(0, 0, size_[2]));
+  distance_.resize(index_of({0, 0, size_[2]}, size_));
   for (std::size_t i = 0; i < distance_.size(); ++i)
     distance_[i] = static_cast<float>(closest.distance(i));
 
@@ -158,7 +157,7 @@ DistanceGrid::DistanceGrid(const Mesh& surface, double pitch_mm, double reach_mm
     if (depth <= 0 || next.row != here.row || next.column != here.column) continue;
     const int last = std::min(size_[2] - 1, static_cast<int>(std::floor(next.z / pitch)));
     for (int z = std::max(0, static_cast<int>(std::ceil(here.z / pitch))); z <= last; ++z) {
-      float& distance = distance_[index(here.column, here.row, z)];
+      float& distance = distance_[index_of({here.column, here.row, z}, size_)];
       distance = -std::abs(distance);
     }
   }
@@ -174,7 +173,7 @@ DistanceGrid::Cell DistanceGrid::cell(const Vec3f& point) const {
   const int x = static_cast<int>(at.x());
   const int y = static_cast<int>(at.y());
   const int z = static_cast<int>(at.z());
-  return {&distance_[index(x, y, z)],
+  return {&distance_[index_of({x, y, z}, size_)],
           at - Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))};
 }
 

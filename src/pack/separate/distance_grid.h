@@ -37,12 +37,6 @@ class DistanceGrid {
     Vec3f inside = Vec3f::Zero();  // 0..1
   };
   Cell cell(const Vec3f& point) const;
-  std::size_t index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) +
-            static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(size_[0]) +
-           static_cast<std::size_t>(x);
-  }
 
   float pitch_;
   Vec3f low_ = Vec3f::Zero();

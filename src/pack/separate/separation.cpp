@@ -99,7 +99,7 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
   bool close = false;
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Box3 box = box_at(*shapes_[i], poses[i]);
+    const Box3 box = shapes_[i]->surface.box(poses[i]);
     const double outside = std::max(-box.min().minCoeff(), (box.max() - box_mm).maxCoeff());
     if (outside > 0) {
       rooms.widen_wall(i, outside + kWidenBy_mm / 3);
@@ -133,7 +133,7 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
 double Separation::height_mm(const std::vector<Pose>& poses) const {
   double height = 0;
   for (std::size_t i = 0; i < poses.size(); ++i)
-    height = std::max(height, box_at(*shapes_[i], poses[i]).max().z());
+    height = std::max(height, shapes_[i]->surface.box(poses[i]).max().z());
   return height;
 }
 

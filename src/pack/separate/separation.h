@@ -26,7 +26,6 @@ class Separation {
   bool separate(std::vector<Pose>& poses, double height_mm, int most_steps) const;
 
   double height_mm(const std::vector<Pose>& poses) const;
-  const std::vector<const Shape*>& shapes() const { return shapes_; }
 
  private:
   double minimise(std::vector<Pose>& poses, const Vec3& box_mm, const Rooms& rooms,

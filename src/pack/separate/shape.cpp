@@ -105,10 +105,4 @@ Shape::Shape(const Mesh& from, double reach_mm)
       balls(balls_of(surface_samples(mesh), radius_mm)),
       outermost(outermost_of(mesh)) {}
 
-Box3 box_at(const Shape& shape, const Pose& pose) {
-  Box3 box;
-  for (const Vec3& point : shape.mesh.points()) box.extend(pose * point);
-  return box;
-}
-
 }  // namespace packmerger

@@ -33,7 +33,4 @@ struct Shape {
   std::vector<Vec3> outermost;
 };
 
-// Where the shape lies at a pose of its own frame.
-Box3 box_at(const Shape& shape, const Pose& pose);
-
 }  // namespace packmerger

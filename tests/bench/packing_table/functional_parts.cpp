@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "bench/packing_table/solids.h"
+#include "fixtures/block_solid.h"
 
 namespace packmerger::bench {
 namespace {
@@ -36,19 +37,21 @@ Mesh bracket(Drawn& drawn) {
     const double middle = (thick + length) / 2;
     return std::vector<double>{0, thick, middle - hole / 2, middle + hole / 2, length};
   };
-  return block_solid(along(leg), {0, (width - hole) / 2, (width + hole) / 2, width}, along(other),
-                     [](int i, int j, int k) {
-                       if (i > 0 && k > 0) return false;
-                       return j != 1 || (i != 2 && k != 2);
-                     });
+  return closed_mesh(fixtures::block_solid(along(leg),
+                                           {0, (width - hole) / 2, (width + hole) / 2, width},
+                                           along(other), [](int i, int j, int k) {
+                                             if (i > 0 && k > 0) return false;
+                                             return j != 1 || (i != 2 && k != 2);
+                                           }));
 }
 
 // A U, open upwards.
 Mesh channel(Drawn& drawn) {
   const double width = drawn.between(16, 32), leg = drawn.between(14, 28);
   const double thick = drawn.between(2.5, 4);
-  return block_solid({0, thick, width - thick, width}, {0, drawn.between(24, 52)}, {0, thick, leg},
-                     [](int i, int, int k) { return i != 1 || k == 0; });
+  return closed_mesh(fixtures::block_solid({0, thick, width - thick, width},
+                                           {0, drawn.between(24, 52)}, {0, thick, leg},
+                                           [](int i, int, int k) { return i != 1 || k == 0; }));
 }
 
 Mesh gear(Drawn& drawn) {
@@ -75,9 +78,9 @@ struct BoxSize {
 
 // Opens upwards.
 Mesh open_box(const BoxSize& size) {
-  return block_solid({0, size.wall, size.x - size.wall, size.x},
-                     {0, size.wall, size.y - size.wall, size.y}, {0, size.wall, size.z},
-                     [](int i, int j, int k) { return k == 0 || i != 1 || j != 1; });
+  return closed_mesh(fixtures::block_solid(
+      {0, size.wall, size.x - size.wall, size.x}, {0, size.wall, size.y - size.wall, size.y},
+      {0, size.wall, size.z}, [](int i, int j, int k) { return k == 0 || i != 1 || j != 1; }));
 }
 
 // A plate with a rim that goes into the box.
@@ -93,8 +96,9 @@ Mesh lid(const BoxSize& size) {
     const bool inner = i == 2 && j == 2;
     return i >= 1 && i <= 3 && j >= 1 && j <= 3 && !inner;
   };
-  return block_solid(lines(size.x), lines(size.y), {0, size.wall, size.wall + kRim_mm},
-                     [&](int i, int j, int k) { return k == 0 || is_rim(i, j); });
+  return closed_mesh(
+      fixtures::block_solid(lines(size.x), lines(size.y), {0, size.wall, size.wall + kRim_mm},
+                            [&](int i, int j, int k) { return k == 0 || is_rim(i, j); }));
 }
 
 // A straight shank that goes on in an arc.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bench/packing_table/solids.h"
+#include "fixtures/block_solid.h"
 
 namespace packmerger::bench {
 namespace {
@@ -58,6 +58,8 @@ Vec3 boat_like(const Vec3& point) {
 
 }  // namespace
 
-Mesh hull_part() { return block_solid(kAlong, kAcross, kUp, is_matter, boat_like); }
+Mesh hull_part() {
+  return closed_mesh(fixtures::block_solid(kAlong, kAcross, kUp, is_matter, boat_like));
+}
 
 }  // namespace packmerger::bench

@@ -1,82 +1,11 @@
 #include "bench/packing_table/solids.h"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
 #include <utility>
 
 namespace packmerger::bench {
-namespace {
-
-using Index = std::array<int, 3>;
-
-// The points of a grid that are in use, numbered as they come.
-class GridPoints {
- public:
-  GridPoints(const std::array<const std::vector<double>*, 3>& lines,
-             const std::function<Vec3(const Vec3&)>& warp, TriangleSoup& soup)
-      : lines_(lines), warp_(warp), soup_(soup) {}
-
-  int operator()(const Index& at) {
-    const auto [found, is_new] = numbers_.emplace(at, static_cast<int>(soup_.points.size()));
-    if (is_new) {
-      Vec3 point;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        point[static_cast<Eigen::Index>(axis)] =
-            (*lines_[axis])[static_cast<std::size_t>(at[axis])];
-      soup_.points.push_back(warp_ ? warp_(point) : point);
-    }
-    return found->second;
-  }
-
- private:
-  std::array<const std::vector<double>*, 3> lines_;
-  const std::function<Vec3(const Vec3&)>& warp_;
-  TriangleSoup& soup_;
-  std::map<Index, int> numbers_;
-};
-
-}  // namespace
-
-Mesh block_solid(const std::vector<double>& xs, const std::vector<double>& ys,
-                 const std::vector<double>& zs, const std::function<bool(int, int, int)>& filled,
-                 const std::function<Vec3(const Vec3&)>& warp) {
-  TriangleSoup soup;
-  GridPoints point({&xs, &ys, &zs}, warp, soup);
-  const Index cells{static_cast<int>(xs.size()) - 1, static_cast<int>(ys.size()) - 1,
-                    static_cast<int>(zs.size()) - 1};
-  const auto is_matter = [&](const Index& at) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (at[axis] < 0 || at[axis] >= cells[axis]) return false;
-    return filled(at[0], at[1], at[2]);
-  };
-  for (int k = 0; k < cells[2]; ++k)
-    for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i) {
-        const Index cell{i, j, k};
-        if (!is_matter(cell)) continue;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          for (const int side : {0, 1}) {
-            Index beside = cell;
-            beside[axis] += side == 1 ? 1 : -1;
-            if (is_matter(beside)) continue;
-            // the side's corners, counter-clockwise seen from the axis' positive end
-            std::array<int, 4> corners{};
-            for (std::size_t c = 0; c < 4; ++c) {
-              Index at = cell;
-              at[axis] += side;
-              at[(axis + 1) % 3] += c == 1 || c == 2 ? 1 : 0;
-              at[(axis + 2) % 3] += c >= 2 ? 1 : 0;
-              corners[c] = point(at);
-            }
-            if (side == 0) std::swap(corners[1], corners[3]);
-            soup.triangles.push_back({corners[0], corners[1], corners[2]});
-            soup.triangles.push_back({corners[0], corners[2], corners[3]});
-          }
-      }
-  return closed_mesh(std::move(soup));
-}
 
 FlatFigure between(const std::vector<Vec2>& right, const std::vector<Vec2>& left, bool closed) {
   FlatFigure figure;

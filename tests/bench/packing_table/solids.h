@@ -1,20 +1,12 @@
-// Closed solids from few numbers: cells of a rectilinear grid, and prisms over flat figures.
+// Prisms over flat figures.
 #pragma once
 
 #include <array>
-#include <functional>
 #include <vector>
 
 #include "model/mesh.h"
 
 namespace packmerger::bench {
-
-// The surface of the cells (i, j, k) of the grid of lines xs, ys, zs (ascending, mm) for which
-// filled() holds, its points moved by `warp`, which must turn nothing inside out. Throws
-// Error{kBadInput} where two cells meet at an edge or a corner alone.
-Mesh block_solid(const std::vector<double>& xs, const std::vector<double>& ys,
-                 const std::vector<double>& zs, const std::function<bool(int, int, int)>& filled,
-                 const std::function<Vec3(const Vec3&)>& warp = {});
 
 // Triangles in the plane, counter-clockwise, that share their corners with their neighbours.
 struct FlatFigure {

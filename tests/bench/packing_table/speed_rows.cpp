@@ -60,12 +60,6 @@ PackProblem paper_bunny() {
                        profile.pack.rotation_step_deg);
 }
 
-Json run_of(Json figures, const Stopwatch& watch) {
-  return {{"figures", std::move(figures)},
-          {"seconds", watch.seconds()},
-          {"processor_s", watch.processor_seconds()}};
-}
-
 Json one_packing_run(const RunSettings&) {
   const Stopwatch watch;
   const PackProblem problem = paper_bunny();
@@ -77,21 +71,20 @@ Json one_packing_run(const RunSettings&) {
   }
   measure_kernel(quiet);
   const double fast_s = quiet["one_packing"]["fast_s"];
-  return run_of({{"one_packing_ratio", quiet["one_packing_ratio"]},
-                 {"packing_ms", 1000 * fast_s},
-                 {"slower_beside_a_sweep", swept["one_packing"]["fast_s"].get<double>() / fast_s},
-                 {"kernel_fraction", quiet["kernel_fraction"]}},
-                watch);
+  return timed_run(
+      watch, {{"one_packing_ratio", quiet["one_packing_ratio"]},
+              {"packing_ms", 1000 * fast_s},
+              {"slower_beside_a_sweep", swept["one_packing"]["fast_s"].get<double>() / fast_s},
+              {"kernel_fraction", quiet["kernel_fraction"]}});
 }
 
 Json search_run(const RunSettings&) {
   const Stopwatch watch;
   Json told;
   measure_search(paper_bunny(), told);
-  return run_of({{"search_ratio", told["search_ratio"]},
-                 {"search_with_gap_ratio", told["search_with_gap_ratio"]},
-                 {"reference_s", told["search"]["reference_s"]}},
-                watch);
+  return timed_run(watch, {{"search_ratio", told["search_ratio"]},
+                           {"search_with_gap_ratio", told["search_with_gap_ratio"]},
+                           {"reference_s", told["search"]["reference_s"]}});
 }
 
 Json prepare_run(const RunSettings& settings) {
@@ -99,7 +92,7 @@ Json prepare_run(const RunSettings& settings) {
   const Stopwatch watch;
   const Job job = prepare_job({folder.path(), 0, settings.seeds.search}, {"bunny", {bunny_model()}},
                               read_profile("objet30"));
-  return run_of({{"cost", job.estimates.packed->cost}, {"parts", job.parts.size()}}, watch);
+  return timed_run(watch, {{"cost", job.estimates.packed->cost}, {"parts", job.parts.size()}});
 }
 
 Json table_one_run(const TableRow& row, const RunSettings& settings) {
@@ -109,7 +102,7 @@ Json table_one_run(const TableRow& row, const RunSettings& settings) {
   Json figures;
   for (const char* name : {"time_ratio", "support_ratio", "parts"})
     if (!made[name].is_null()) figures[name] = made[name];
-  return run_of(figures, watch);
+  return timed_run(watch, figures);
 }
 
 // The most memory that this program has held since the last reset.
@@ -130,7 +123,7 @@ Json growth_run(int parts, bool all_alike, const RunSettings& settings) {
   reset_peak_memory();
   const Stopwatch watch;
   const Packing packing = pack(problem, {});
-  return run_of({{"trays", packing.trays.size()}, {"peak_memory_mb", peak_memory_mb()}}, watch);
+  return timed_run(watch, {{"trays", packing.trays.size()}, {"peak_memory_mb", peak_memory_mb()}});
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/packing_table/kept_runs.h"
+#include "bench/stopwatch.h"
 
 namespace packmerger::bench {
 
@@ -27,6 +29,14 @@ struct TableCase {
   // Throws Error{kUnavailable} where something that is needed is not installed.
   std::function<nlohmann::ordered_json(const RunSettings& settings)> measure;
 };
+
+// A run that took what the watch says so far.
+inline nlohmann::ordered_json timed_run(
+    const Stopwatch& watch, nlohmann::ordered_json figures = nlohmann::ordered_json::object()) {
+  return {{"figures", std::move(figures)},
+          {"seconds", watch.seconds()},
+          {"processor_s", watch.processor_seconds()}};
+}
 
 std::vector<TableCase> tray_rows();
 std::vector<TableCase> speed_rows();

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "pack/exact/exact_figures.h"
 #include "pack/exact/exact_gap.h"
 #include "pack/exact/exact_removal.h"
 
@@ -26,13 +27,6 @@ std::vector<std::vector<int>> by_tray(const Packing& packing) {
     trays[tray].push_back(static_cast<int>(i));
   }
   return trays;
-}
-
-Mesh standing(const PackProblem& problem, const PlacedPart& part) {
-  std::vector<const Mesh*> members;
-  for (const int item : part.items)
-    members.push_back(&problem.items[static_cast<std::size_t>(item)].surface);
-  return transformed(united(members), part.pose);
 }
 
 void check_items(const PackProblem& problem, const Packing& packing, TrayCheck& check) {
@@ -109,7 +103,7 @@ std::vector<std::vector<Mesh>> standing_parts(const PackProblem& problem, const 
   for (const std::vector<int>& on_tray : by_tray(packing)) {
     trays.emplace_back();
     for (const int part : on_tray)
-      trays.back().push_back(standing(problem, packing.parts[static_cast<std::size_t>(part)]));
+      trays.back().push_back(placed_mesh(problem, packing.parts[static_cast<std::size_t>(part)]));
   }
   return trays;
 }

@@ -50,12 +50,6 @@ Json check_json(const TrayCheck& check) {
           {"broken", check.broken}};
 }
 
-Json timed(const Stopwatch& watch) {
-  return {{"figures", Json::object()},
-          {"seconds", watch.seconds()},
-          {"processor_s", watch.processor_seconds()}};
-}
-
 // The same packer on one thread, which is what the others have.
 Packing packed_on_one_thread(const PackProblem& problem) {
   const ThreadLimit one_thread(1);
@@ -80,7 +74,7 @@ Json sampled_run(const HeightRow& row, const RunSettings& settings) {
   const PackProblem problem = row.problem(settings.seeds.instance);
   const Stopwatch watch;
   const SampledAnswer answer = paper_sampled(problem, row.budget_s, settings.seeds.search);
-  Json run = timed(watch);
+  Json run = timed_run(watch);
   double volume = 0;
   for (const PackItem& item : problem.items) volume += item.volume_mm3;
   run["figures"] = {
@@ -93,7 +87,7 @@ Json apart_run(const HeightRow& row, const RunSettings& settings) {
   const PackProblem problem = row.problem(settings.seeds.instance);
   const Stopwatch watch;
   const ApartAnswer answer = paper_apart(problem, row.budget_s, settings.seeds.search);
-  Json run = timed(watch);
+  Json run = timed_run(watch);
   const TrayCheck check = check_packing(problem, answer.packing);
   run["figures"] = {{"height_mm", check.height_mm}, {"density", check.density}};
   run["check"] = check_json(check);
@@ -119,7 +113,7 @@ Json nested_run(const RunSettings& settings) {
   problem.seed = settings.seeds.search;
   const Stopwatch watch;
   const Packing packing = pack(problem, {});
-  Json run = timed(watch);
+  Json run = timed_run(watch);
   const TrayCheck check = check_packing(problem, packing);
   run["figures"] = {{"height_mm", check.height_mm},
                     {"height_ratio", check.height_mm / nested_height_mm()}};
@@ -135,7 +129,7 @@ Json segments_run(const std::string& name, const Mesh& model, const RunSettings&
       packing_problem({planned_division(model, profile)}, profile, settings.seeds.search, 0);
   const Stopwatch watch;
   const Packing packing = pack(problem, {});
-  Json run = timed(watch);
+  Json run = timed_run(watch);
   const TrayCheck check = check_packing(problem, packing);
   run["figures"] = {{"cost", packing.cost},
                     {"parts", packing.parts.size()},
@@ -176,7 +170,7 @@ Json hulls_run(const RunSettings& settings) {
     problem.seed = settings.seeds.search;
     const Stopwatch watch;
     const Packing packing = pack(problem, {});
-    Json run = timed(watch);
+    Json run = timed_run(watch);
     if (packing.trays.size() == 1) continue;
     const Packing one = fullest_tray(packing);
     problem.items.resize(one.parts.size());
@@ -198,7 +192,7 @@ Json height_run(const std::string& name, PackProblem problem, bool anywhere, dou
   problem.seed = settings.seeds.search;
   const Stopwatch watch;
   const Packing packing = packed_on_one_thread(problem);
-  Json run = timed(watch);
+  Json run = timed_run(watch);
   const TrayCheck check = check_packing(problem, packing);
   run["figures"] = {{"height_mm", check.height_mm},
                     {"density", check.density},

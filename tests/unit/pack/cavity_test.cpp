@@ -1,12 +1,11 @@
 // Parts in cavities and under overhangs, and their ways out.
-#include <array>
-#include <map>
 
 #include <gtest/gtest.h>
 
 #include <rapidcheck/gtest.h>
 
 #include "base/parallel.h"
+#include "fixtures/block_solid.h"
 #include "pack/anywhere/disassembly_order.h"
 #include "pack/anywhere/escape_path.h"
 #include "pack/exact/exact_gap.h"
@@ -36,81 +35,19 @@ Mesh upside_down(const Mesh& mesh) {
 // A box of 30 × 20 × 24 mm with walls of 2 mm, closed but for a square window of the given width in
 // the wall at its right end.
 Mesh box_with_window(double width) {
-  const std::array<std::vector<double>, 3> cuts{
-      std::vector<double>{0, 2, 28, 30},
-      std::vector<double>{0, 2, 10 - width / 2, 10 + width / 2, 18, 20},
-      std::vector<double>{0, 2, 3, 3 + width, 22, 24}};
-  const auto filled = [](const std::array<int, 3>& cell) {
-    if (cell[0] < 0 || cell[0] > 2 || cell[1] < 0 || cell[1] > 4 || cell[2] < 0 || cell[2] > 4)
-      return false;
-    const bool inner = cell[1] >= 1 && cell[1] <= 3 && cell[2] >= 1 && cell[2] <= 3;
-    if (cell[0] == 1) return !inner;
-    return cell[0] == 0 || cell[1] != 2 || cell[2] != 2;
+  const auto filled = [](int x, int y, int z) {
+    const bool inner = y >= 1 && y <= 3 && z >= 1 && z <= 3;
+    if (x == 1) return !inner;
+    return x == 0 || y != 2 || z != 2;
   };
-  TriangleSoup soup;
-  std::map<std::array<int, 3>, int> known;
-  const auto point = [&](const std::array<int, 3>& corner) {
-    const auto [entry, is_new] = known.emplace(corner, static_cast<int>(soup.points.size()));
-    if (is_new)
-      soup.points.emplace_back(cuts[0][static_cast<std::size_t>(corner[0])],
-                               cuts[1][static_cast<std::size_t>(corner[1])],
-                               cuts[2][static_cast<std::size_t>(corner[2])]);
-    return entry->second;
-  };
-  for (int x = 0; x < 3; ++x)
-    for (int y = 0; y < 5; ++y)
-      for (int z = 0; z < 5; ++z)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          for (const int side : {0, 1}) {
-            std::array<int, 3> cell{x, y, z};
-            if (!filled(cell)) continue;
-            cell[axis] += side == 0 ? -1 : 1;
-            if (filled(cell)) continue;
-            std::array<int, 3> corner{x, y, z};
-            corner[axis] += side;
-            std::array<int, 4> quad{};
-            for (std::size_t k = 0; k < 4; ++k) {
-              std::array<int, 3> at = corner;
-              at[(axis + 1) % 3] += k == 1 || k == 2 ? 1 : 0;
-              at[(axis + 2) % 3] += k >= 2 ? 1 : 0;
-              quad[k] = point(at);
-            }
-            if (side == 0) std::swap(quad[1], quad[3]);
-            soup.triangles.push_back({quad[0], quad[1], quad[2]});
-            soup.triangles.push_back({quad[0], quad[2], quad[3]});
-          }
-  return closed_mesh(soup);
-}
-
-Mesh random_solid(Random& random) {
-  switch (random.below(4)) {
-    case 0:
-      return shapes::turned(shapes::cup(8, 12, 2, 12), shapes::any_rotation(random));
-    case 1:
-      return shapes::turned(shapes::l_shape(14, 4, 6), shapes::any_rotation(random));
-    case 2:
-      return shapes::turned(shapes::box(Vec3(5, 9, 12)), shapes::any_rotation(random));
-    default:
-      return shapes::turned(shapes::bowl(9, 2, 12), shapes::any_rotation(random));
-  }
-}
-
-bool inside(const Mesh& mesh, const Vec3& p) {
-  double sum = 0;
-  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
-    const auto corner = mesh.corners(i);
-    const Vec3 a = corner[0] - p;
-    const Vec3 b = corner[1] - p;
-    const Vec3 c = corner[2] - p;
-    sum += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
-                                                 b.dot(c) * a.norm() + c.dot(a) * b.norm());
-  }
-  return sum > 2 * std::numbers::pi;
+  return closed_mesh(fixtures::block_solid({0, 2, 28, 30},
+                                           {0, 2, 10 - width / 2, 10 + width / 2, 18, 20},
+                                           {0, 2, 3, 3 + width, 22, 24}, filled));
 }
 
 RC_GTEST_PROP(SolidPart, SpansHoldAllMatterAndLittleElse, (std::uint64_t seed)) {
   Random random(seed);
-  Mesh mesh = random_solid(random);
+  Mesh mesh = shapes::random_solid(random);
   Pose pose = Pose::Identity();
   pose.translation() = -bounding_box(mesh).min() + Vec3(random.unit(), random.unit(), 0);
   mesh = transformed(mesh, pose);
@@ -126,7 +63,7 @@ RC_GTEST_PROP(SolidPart, SpansHoldAllMatterAndLittleElse, (std::uint64_t seed)) 
   const Vec3 size = part.box.max();
   for (int i = 0; i < 300; ++i) {
     const Vec3 p = size.cwiseProduct(Vec3(random.unit(), random.unit(), random.unit()));
-    if (inside(mesh, p)) RC_ASSERT(spans(p));
+    if (check::is_inside(mesh, p)) RC_ASSERT(spans(p));
   }
   // Both ends of every span are heights of the surface somewhere over the cell.
   double volume = 0;
@@ -139,7 +76,8 @@ RC_GTEST_PROP(SolidPart, SpansHoldAllMatterAndLittleElse, (std::uint64_t seed)) 
     if (cell.high - cell.low <= 4) continue;
     // An emptiness thinner than a unit, where the line grazes an edge, is not told.
     const Vec3 unit(0, 0, grid.unit_mm);
-    RC_ASSERT(inside(mesh, middle) || (inside(mesh, middle - unit) && inside(mesh, middle + unit)));
+    RC_ASSERT(check::is_inside(mesh, middle) ||
+              (check::is_inside(mesh, middle - unit) && check::is_inside(mesh, middle + unit)));
   }
 }
 
@@ -147,8 +85,8 @@ RC_GTEST_PROP(SolidTray, FreeHeightsKeepTheGap, (std::uint64_t seed)) {
   Random random(seed);
   const double gap = random.below(2) == 0 ? 0 : 0.8;
   const SolidGrid grid = grid_of(Vec3(40, 40, 60), gap, 0.7);
-  const Mesh standing = random_solid(random);
-  const Mesh moving = random_solid(random);
+  const Mesh standing = shapes::random_solid(random);
+  const Mesh moving = shapes::random_solid(random);
   const SolidPart one = drawn(standing, grid);
   const SolidPart other = drawn(moving, grid);
   const SolidPlace place{&one, 10, 10, 0};
@@ -254,7 +192,7 @@ TEST(Pack, APartGoesIntoABoxOnlyWhereItComesOutAgain) {
 TEST(Pack, WaysOutAreTheSameOnOneThreadAndOnTwo) {
   std::vector<Mesh> meshes{box_with_window(12), shapes::box(Vec3(8, 8, 8))};
   Random random(3);
-  for (int i = 0; i < 4; ++i) meshes.push_back(random_solid(random));
+  for (int i = 0; i < 4; ++i) meshes.push_back(shapes::random_solid(random));
   PackProblem problem = standing_problem(std::move(meshes), Vec3(50, 50, 60));
   problem.rotation_step = radians(90);
   const Packing two = pack(problem, {});

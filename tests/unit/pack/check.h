@@ -53,6 +53,20 @@ inline double segment_distance(const Vec3& p, const Vec3& q, const Vec3& r, cons
   return best;
 }
 
+// By the solid angle of all facets.
+inline bool is_inside(const Mesh& mesh, const Vec3& p) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
+    const auto corner = mesh.corners(i);
+    const Vec3 a = corner[0] - p;
+    const Vec3 b = corner[1] - p;
+    const Vec3 c = corner[2] - p;
+    sum += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                 b.dot(c) * a.norm() + c.dot(a) * b.norm());
+  }
+  return sum > 2 * std::numbers::pi;
+}
+
 inline double point_distance(const Vec3& x, const Triangle& t) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   double best = std::numeric_limits<double>::infinity();

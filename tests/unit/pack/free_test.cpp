@@ -17,36 +17,14 @@
 namespace packmerger {
 namespace {
 
-std::vector<Mesh> solids() {
-  return {shapes::cup(8, 12, 2, 12), shapes::l_shape(14, 4, 6), shapes::box(Vec3(5, 9, 12)),
-          shapes::bowl(9, 2, 12)};
-}
-
-Mesh random_solid(Random& random) {
-  return shapes::turned(solids()[random.below(4)], shapes::any_rotation(random));
-}
-
 // Drawn once: that is what takes the time.
 const Shape& random_shape(Random& random) {
   static const std::vector<Shape> shapes = [] {
     std::vector<Shape> made;
-    for (const Mesh& mesh : solids()) made.emplace_back(mesh, 4);
+    for (const Mesh& mesh : shapes::solids()) made.emplace_back(mesh, 4);
     return made;
   }();
   return shapes[random.below(shapes.size())];
-}
-
-// By the sign of the solid angle.
-bool is_inside(const Mesh& mesh, const Vec3& p) {
-  double sum = 0;
-  for (std::size_t i = 0; i < mesh.n_triangles(); ++i) {
-    const auto corner = mesh.corners(i);
-    const Vec3 a = (corner[0] - p).normalized();
-    const Vec3 b = (corner[1] - p).normalized();
-    const Vec3 c = (corner[2] - p).normalized();
-    sum += std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
-  }
-  return sum > std::numbers::pi;
 }
 
 double point_to_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
@@ -80,14 +58,14 @@ RC_GTEST_PROP(DistanceGrid, KnowsTheClosestPointOfATriangle, (std::uint64_t seed
 
 RC_GTEST_PROP(DistanceGrid, TellsTheDistanceToTheClosestTriangle, (std::uint64_t seed)) {
   Random random(seed);
-  const Mesh mesh = random_solid(random);
+  const Mesh mesh = shapes::random_solid(random);
   const DistanceGrid grid(mesh, 1, 3);
   const Box3 box = bounding_box(mesh);
   for (int i = 0; i < 20; ++i) {
     Vec3 point;
     for (int k = 0; k < 3; ++k)
       point[k] = box.min()[k] - 2.5 + random.unit() * (box.sizes()[k] + 5);
-    const double exact = closest_triangle(mesh, point) * (is_inside(mesh, point) ? -1 : 1);
+    const double exact = closest_triangle(mesh, point) * (check::is_inside(mesh, point) ? -1 : 1);
     Vec3f gradient = Vec3f::Zero();
     const float told = grid.at(point.cast<float>(), gradient);
     RC_ASSERT(std::abs(told - exact) < std::sqrt(3) / 2);
@@ -276,7 +254,7 @@ TEST(FreeSearch, KeepsWhatIsPromised) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     Random random(seed);
     std::vector<Mesh> meshes;
-    for (int i = 0; i < 6; ++i) meshes.push_back(random_solid(random));
+    for (int i = 0; i < 6; ++i) meshes.push_back(shapes::random_solid(random));
     PackProblem problem = low_problem(std::move(meshes), Vec3(30, 30, 80), seed % 2 == 0 ? 0 : 0.6);
     problem.seed = seed;
     const Packing free = pack(problem, {});
@@ -289,7 +267,7 @@ TEST(FreeSearch, KeepsWhatIsPromised) {
 TEST(FreeSearch, KeepsWhatIsPromisedOnSeveralTrays) {
   std::vector<Mesh> meshes;
   for (int i = 0; i < 2; ++i)
-    for (const Mesh& mesh : solids()) meshes.push_back(mesh);
+    for (const Mesh& mesh : shapes::solids()) meshes.push_back(mesh);
   const PackProblem problem = low_problem(std::move(meshes), Vec3(24, 24, 18), 0.5);
   const Packing packing = pack(problem, {});
   EXPECT_GT(packing.trays.size(), 1U);
@@ -299,7 +277,7 @@ TEST(FreeSearch, KeepsWhatIsPromisedOnSeveralTrays) {
 TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
   Random random(5);
   std::vector<Mesh> meshes;
-  for (int i = 0; i < 6; ++i) meshes.push_back(random_solid(random));
+  for (int i = 0; i < 6; ++i) meshes.push_back(shapes::random_solid(random));
   PackProblem problem = low_problem(std::move(meshes), Vec3(28, 28, 80), 0.4);
   const Packing two = pack(problem, {});
   const ThreadLimit limit(1);

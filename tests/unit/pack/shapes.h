@@ -172,4 +172,15 @@ inline Mesh turned(const Mesh& mesh, const Mat3& rotation) {
   return transformed(mesh, pose);
 }
 
+// A few of the above, with cavities and without.
+inline std::vector<Mesh> solids() {
+  return {cup(8, 12, 2, 12), l_shape(14, 4, 6), box(Vec3(5, 9, 12)), bowl(9, 2, 12)};
+}
+
+// One of them, any way round.
+inline Mesh random_solid(Random& random) {
+  const std::size_t kind = random.below(4);
+  return turned(solids()[kind], any_rotation(random));
+}
+
 }  // namespace packmerger::shapes

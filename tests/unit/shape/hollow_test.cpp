@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "fixtures/block_solid.h"
 #include "fixtures/models.h"
 #include "shape/read/soup.h"
 #include "shape/solid/solidify.h"
@@ -94,37 +96,13 @@ TEST(Hollow, CrevicesNarrowerThanAVoxelHaveTheirWall) {
 
 // A box with a chamber in it and a square hole through the middle of its lowest wall.
 TriangleSoup drained_box(double side, double wall, double hole) {
-  const std::array<double, 6> across = {0,           wall, (side - hole) / 2, (side + hole) / 2,
-                                        side - wall, side};
-  const std::array<double, 4> up = {0, wall, side - wall, side};
+  const std::vector<double> across = {0,           wall, (side - hole) / 2, (side + hole) / 2,
+                                      side - wall, side};
   const auto filled = [](int x, int y, int z) {
-    if (x < 0 || y < 0 || z < 0 || x > 4 || y > 4 || z > 2) return false;
     const bool in_chamber = z == 1 && x > 0 && x < 4 && y > 0 && y < 4;
     return !in_chamber && !(z == 0 && x == 2 && y == 2);
   };
-  TriangleSoup soup;
-  const auto corner = [](int x, int y, int z) { return x + 6 * (y + 6 * z); };
-  for (const double z : up)
-    for (const double y : across)
-      for (const double x : across) soup.points.emplace_back(x, y, z);
-  const auto quad = [&](int a, int b, int c, int d) {
-    soup.triangles.push_back({a, b, c});
-    soup.triangles.push_back({a, c, d});
-  };
-  for (int z = 0; z < 3; ++z)
-    for (int y = 0; y < 5; ++y)
-      for (int x = 0; x < 5; ++x) {
-        if (!filled(x, y, z)) continue;
-        std::array<int, 8> c;
-        for (int i = 0; i < 8; ++i) c[i] = corner(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
-        if (!filled(x - 1, y, z)) quad(c[0], c[4], c[6], c[2]);
-        if (!filled(x + 1, y, z)) quad(c[1], c[3], c[7], c[5]);
-        if (!filled(x, y - 1, z)) quad(c[0], c[1], c[5], c[4]);
-        if (!filled(x, y + 1, z)) quad(c[2], c[6], c[7], c[3]);
-        if (!filled(x, y, z - 1)) quad(c[0], c[2], c[3], c[1]);
-        if (!filled(x, y, z + 1)) quad(c[4], c[5], c[7], c[6]);
-      }
-  return without_unused_points(soup);
+  return fixtures::block_solid(across, across, {0, wall, side - wall, side}, filled);
 }
 
 TEST(Hollow, ChambersWithANarrowWayOutAreNoMatter) {
