@@ -28,6 +28,7 @@ constexpr double kWorthIt = 0.999;            // of the lowest height
 constexpr double kWorthSeparating_mm = 0.25;  // below the lowest one
 constexpr double kShake_mm = 0.3;             // of what jammed
 constexpr std::size_t kMostStuckTakenOut = 2;
+constexpr int kMostStuckLayouts = 10;     // one after the other: what is low there has no way out
 constexpr int kCompressionPatience = 16;  // failures one after the other
 
 // Meshes that are the same to the last bit, as copies are, share a shape.
@@ -118,25 +119,29 @@ class FreeSearch {
                        std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_,
                        random_.bits());
     std::size_t rounds = 0;
+    int stuck_layouts = 0;
     const std::size_t patience =
         pace_.has_budget()
             ? kRoundsOfTurn
             : kRoundsOfPatience * static_cast<std::size_t>(std::max(1, problem_.tabu_patience));
-    while (lattice_->next([&] { return is_over(until) || ++rounds > patience; })) {
+    while (stuck_layouts < kMostStuckLayouts &&
+           lattice_->next([&] { return is_over(until) || ++rounds > patience; })) {
       rounds = 0;
       const double lower_mm =
           pace_.has_budget() && !is_over(kEarly) ? kMuchLower_mm : kWorthSeparating_mm;
       if (lattice_->height_mm() < lowest_mm_ - lower_mm) {
         const std::vector<int> stuck = made_exact(*lattice_);
         if (!stuck.empty()) {
+          ++stuck_layouts;
           lattice_->take_out(some_of(stuck));
           continue;
         }
       }
+      stuck_layouts = 0;
       lattice_->lower_limit();
     }
-    // Stuck: the next turn begins with another layout.
-    if (rounds > patience) lattice_.reset();
+    // The next turn begins with another layout.
+    if (rounds > patience || stuck_layouts == kMostStuckLayouts) lattice_.reset();
   }
 
   void compress_lowest() {

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "base/parallel.h"
+#include "fixtures/models.h"
 #include "pack/exact/exact_disassembly.h"
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/exact_removal.h"
@@ -196,6 +197,9 @@ TEST(Compression, GoesBackToTheLastLayoutThatWasAccepted) {
 
 // A ball under an upturned cup comes out after it, a cube in the clasp of a U is drawn out of it,
 // and a ball in a closed box never comes out.
+// A cube of 20 mm round a closed chamber of 14 mm.
+Mesh shut_box() { return closed_mesh(fixtures::nested_cubes(20, 14)); }
+
 TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   const auto at = [](const Mesh& mesh, const Vec3& low) {
     return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
@@ -227,15 +231,8 @@ TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   EXPECT_FALSE(first_obstacle(clasped, drawn.order, drawn.paths, {}));
   EXPECT_TRUE(first_obstacle(clasped, drawn.order, {{}, {}}, {}));
 
-  const Mesh shut = at(shapes::box(Vec3(20, 20, 20)), Vec3(5, 5, 0));
-  TriangleSoup soup = to_soup(shut);
-  const TriangleSoup hollow = to_soup(at(shapes::box(Vec3(14, 14, 14)), Vec3(8, 8, 3)));
-  const auto offset = static_cast<int>(soup.points.size());
-  soup.points.insert(soup.points.end(), hollow.points.begin(), hollow.points.end());
-  for (const auto& [a, b, c] : hollow.triangles)
-    soup.triangles.push_back({a + offset, c + offset, b + offset});
   const ExactDisassembly none = exact_disassembly(
-      {closed_mesh(soup), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, base_mm, {});
+      {at(shut_box(), Vec3(5, 5, 0)), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, base_mm, {});
   EXPECT_EQ(none.stuck, (std::vector<int>{0, 1}));
 }
 
@@ -286,6 +283,15 @@ TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
   EXPECT_EQ(one.removal_paths, two.removal_paths);
   for (std::size_t i = 0; i < one.parts.size(); ++i)
     EXPECT_EQ(one.parts[i].pose.matrix(), two.parts[i].pose.matrix());
+}
+
+// The chamber is the lowest place that there is, again and again.
+TEST(FreeSearch, EndsWhereTheLowestPlaceHasNoWayOut) {
+  const PackProblem problem =
+      low_problem({shut_box(), shapes::box(Vec3(6, 6, 6))}, Vec3(22, 22, 40), 0);
+  const Packing packing = pack(problem, {});
+  check::expect_valid(problem, packing, 0.25);
+  EXPECT_GT(packing.trays[0].size_mm.z(), 25);
 }
 
 TEST(FreeSearch, FindsALowerTrayThanDropping) {
