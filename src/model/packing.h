@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/mesh.h"
+#include "model/plate.h"
 #include "model/segments.h"
 
 namespace packmerger {
@@ -40,6 +41,7 @@ struct PackProblem {
   // shut the cavity again, and nobody could take support out of it.
   std::vector<std::vector<int>> enclosures;
   Vec3 build_mm = Vec3::Zero();  // the tray, origin front left, z = 0 the plate
+  Plate plate;                   // its walls within build_mm: no part stands over them
   double gap_mm = 1;             // least Euclidean distance between two parts
   double grid_mm = 1;            // cell of the height field in the answer
   double rotation_step = 0;      // radians, about each of the three axes

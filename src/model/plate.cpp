@@ -1,0 +1,121 @@
+#include "model/plate.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace packmerger {
+namespace {
+
+using Corners = std::array<Vec2, 3>;
+
+// What lies between a polygon and its hull: one polygon for each run of corners off the hull.
+std::vector<Polygon> pockets(const Polygon& outline, const Polygon& hull) {
+  const std::size_t count = outline.size();
+  const auto on_hull = [&](std::size_t i) {
+    return std::find(hull.begin(), hull.end(), outline[i % count]) != hull.end();
+  };
+  std::size_t first = 0;
+  while (!on_hull(first)) ++first;
+  std::vector<Polygon> found;
+  Polygon run;
+  for (std::size_t i = first; i <= first + count; ++i) {
+    run.push_back(outline[i % count]);
+    if (!on_hull(i)) continue;
+    // Corners in the middle of a side of the hull leave nothing between them.
+    if (run.size() > 2 && std::abs(signed_area_mm2(run)) > 0)
+      found.push_back(counter_clockwise(std::move(run)));
+    run = {outline[i % count]};
+  }
+  return found;
+}
+
+bool is_inside(const Corners& triangle, const Vec2& at) {
+  bool left = true;
+  bool right = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec2 side = triangle[(i + 1) % 3] - triangle[i];
+    const Vec2 to = at - triangle[i];
+    const double turn = side.x() * to.y() - side.y() * to.x();
+    left = left && turn >= 0;
+    right = right && turn <= 0;
+  }
+  return left || right;
+}
+
+}  // namespace
+
+Plate::Plate(const Polygon& outline, const std::vector<Polygon>& kept_out) {
+  if (!outline.empty()) {
+    hull_ = convex_hull(outline);
+    for (std::size_t i = 0; i < hull_.size(); ++i) {
+      const Vec2 side = hull_[(i + 1) % hull_.size()] - hull_[i];
+      const Vec2 outward = Vec2(side.y(), -side.x()).normalized();
+      sides_.push_back({outward, outward.dot(hull_[i])});
+    }
+    barred_ = pockets(counter_clockwise(outline), hull_);
+  }
+  for (const Polygon& area : kept_out) barred_.push_back(counter_clockwise(area));
+  for (const Polygon& area : barred_) {
+    boxes_.push_back(bounding_box(area));
+    inner_points_.push_back(inner_point(area));
+  }
+}
+
+Plate::Wall Plate::nearest_wall(const Vec2& at) const {
+  Wall nearest;
+  for (const Side& side : sides_) {
+    const double clearance = side.offset - side.outward.dot(at);
+    if (clearance < nearest.clearance_mm) nearest = {clearance, -side.outward};
+  }
+  for (const Polygon& area : barred_) {
+    const Vec2 border = nearest_on_border(area, at);
+    const double distance = (border - at).norm();
+    const double sign = contains(area, at) ? -1 : 1;
+    if (sign * distance >= nearest.clearance_mm) continue;
+    nearest.clearance_mm = sign * distance;
+    nearest.away = distance > 0 ? Vec2(sign / distance * (at - border)) : Vec2::Zero();
+  }
+  return nearest;
+}
+
+double Plate::breach_mm(const TriangleView& surface, const Pose& pose) const {
+  if (is_whole()) return 0;
+  std::vector<Vec2> points;
+  points.reserve(surface.points.size());
+  Eigen::AlignedBox2d box;
+  for (const Vec3& point : surface.points) {
+    points.emplace_back((pose * point).head<2>());
+    box.extend(points.back());
+  }
+  if (points.empty()) return 0;
+  double breach = 0;
+  for (const Side& side : sides_) {
+    const Vec2 farthest(side.outward.x() > 0 ? box.max().x() : box.min().x(),
+                        side.outward.y() > 0 ? box.max().y() : box.min().y());
+    if (side.outward.dot(farthest) <= side.offset) continue;
+    for (const Vec2& point : points)
+      breach = std::max(breach, side.outward.dot(point) - side.offset);
+  }
+  for (std::size_t i = 0; i < barred_.size(); ++i) {
+    if (!boxes_[i].intersects(box)) continue;
+    const Polygon& area = barred_[i];
+    const double inner_depth =
+        (nearest_on_border(area, inner_points_[i]) - inner_points_[i]).norm();
+    for (const auto& [a, b, c] : surface.triangles) {
+      const Corners corners{points[static_cast<std::size_t>(a)],
+                            points[static_cast<std::size_t>(b)],
+                            points[static_cast<std::size_t>(c)]};
+      Eigen::AlignedBox2d of_triangle(corners[0]);
+      of_triangle.extend(corners[1]).extend(corners[2]);
+      if (!boxes_[i].intersects(of_triangle)) continue;
+      // Where no side of it enters the area, it covers all of the area or nothing.
+      if (is_inside(corners, inner_points_[i])) breach = std::max(breach, inner_depth);
+      for (std::size_t k = 0; k < 3; ++k)
+        breach = std::max(breach, depth_within(area, corners[k], corners[(k + 1) % 3]));
+    }
+  }
+  return breach;
+}
+
+}  // namespace packmerger
