@@ -43,6 +43,32 @@ bool is_inside(const Corners& triangle, const Vec2& at) {
   return left || right;
 }
 
+// The points of a convex polygon, counter-clockwise, at which outward · p <= offset.
+Polygon clipped(const Polygon& polygon, const Vec2& outward, double offset) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2& from = polygon[i];
+    const Vec2& to = polygon[(i + 1) % polygon.size()];
+    const double from_over = outward.dot(from) - offset;
+    const double to_over = outward.dot(to) - offset;
+    if (from_over <= 0) kept.push_back(from);
+    if ((from_over < 0 && to_over > 0) || (from_over > 0 && to_over < 0))
+      kept.push_back(from + from_over / (from_over - to_over) * (to - from));
+  }
+  return kept;
+}
+
+// A flat fan over a convex polygon.
+TriangleSoup fan(const Polygon& hull) {
+  TriangleSoup soup;
+  for (const Vec2& at : hull) soup.points.emplace_back(at.x(), at.y(), 0);
+  for (int i = 1; i + 1 < static_cast<int>(hull.size()); ++i)
+    soup.triangles.push_back({0, i, i + 1});
+  return soup;
+}
+
+Pose shifted_by(const Vec2& shift) { return Pose(Eigen::Translation3d(shift.x(), shift.y(), 0)); }
+
 }  // namespace
 
 Plate::Plate(const Polygon& outline, const std::vector<Polygon>& kept_out) {
@@ -116,6 +142,54 @@ double Plate::breach_mm(const TriangleView& surface, const Pose& pose) const {
     }
   }
   return breach;
+}
+
+bool Plate::surely_clear(const Box3& box) const {
+  const Eigen::AlignedBox2d flat(box.min().head<2>().eval(), box.max().head<2>().eval());
+  for (const Side& side : sides_) {
+    const Vec2 farthest(side.outward.x() > 0 ? flat.max().x() : flat.min().x(),
+                        side.outward.y() > 0 ? flat.max().y() : flat.min().y());
+    if (side.outward.dot(farthest) > side.offset) return false;
+  }
+  return std::none_of(boxes_.begin(), boxes_.end(),
+                      [&](const Eigen::AlignedBox2d& barred) { return barred.intersects(flat); });
+}
+
+std::optional<Vec2> Plate::spot_for(const TriangleView& surface, const Vec2& room_mm) const {
+  constexpr int kLattice = 15;
+  std::vector<Vec2> points;
+  points.reserve(surface.points.size());
+  for (const Vec3& point : surface.points) points.emplace_back(point.head<2>());
+  const Polygon hull = convex_hull(std::move(points));
+  const Eigen::AlignedBox2d box = bounding_box(hull);
+  // The shifts within the rectangle and the plate's hull are a convex polygon.
+  const Vec2 low = -box.min();
+  const Vec2 high = (room_mm - box.max()).array() + kWallTolerance_mm / 2;
+  if (hull.empty() || (high - low).minCoeff() < 0) return std::nullopt;
+  Polygon shifts{low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())};
+  for (const Side& side : sides_) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Vec2& point : hull) farthest = std::max(farthest, side.outward.dot(point));
+    shifts = clipped(shifts, side.outward, side.offset - farthest + kWallTolerance_mm / 2);
+    if (shifts.empty()) return std::nullopt;
+  }
+  Vec2 middle = Vec2::Zero();
+  for (const Vec2& shift : shifts) middle += shift / static_cast<double>(shifts.size());
+  if (barred_.empty()) return middle;
+  std::vector<Vec2> tried{middle};
+  tried.insert(tried.end(), shifts.begin(), shifts.end());
+  const Eigen::AlignedBox2d range = bounding_box(shifts);
+  for (int y = 0; y < kLattice; ++y)
+    for (int x = 0; x < kLattice; ++x) {
+      const Vec2 at = range.min() + range.sizes().cwiseProduct(Vec2(x, y)) / (kLattice - 1);
+      if (contains(shifts, at)) tried.push_back(at);
+    }
+  // The hull is looked at first: where it stands clear the surface does, and it is far smaller.
+  const TriangleSoup of_hull = fan(hull);
+  for (const TriangleView& looked_at : {TriangleView(of_hull), surface})
+    for (const Vec2& shift : tried)
+      if (breach_mm(looked_at, shifted_by(shift)) <= kWallTolerance_mm) return shift;
+  return std::nullopt;
 }
 
 }  // namespace packmerger

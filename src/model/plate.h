@@ -2,7 +2,7 @@
 #pragma once
 
 #include <limits>
-#include <span>
+#include <optional>
 
 #include "model/mesh.h"
 #include "model/plane/polygon.h"
@@ -41,6 +41,14 @@ class Plate {
   // what is outside of the hull; over barred areas it is above 0 where anything stands over them,
   // and a measure of how deep.
   double breach_mm(const TriangleView& surface, const Pose& pose) const;
+
+  // Whether nothing within the box can stand over a wall.
+  bool surely_clear(const Box3& box) const;
+
+  // A shift in x and y that puts a surface within the rectangle from 0 to room_mm, clear of all
+  // walls; the middle of what is free, if that is free, and otherwise sought on a lattice. The same
+  // for the same surface. Empty where none was found.
+  std::optional<Vec2> spot_for(const TriangleView& surface, const Vec2& room_mm) const;
 
  private:
   struct Side {  // of the hull: points at outward · p <= offset are inside

@@ -15,6 +15,7 @@
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/settle.h"
 #include "pack/free/free_search.h"
+#include "pack/maps/ways_up.h"
 #include "pack/search/refine.h"
 #include "pack/search/search.h"
 
@@ -76,12 +77,17 @@ void check_settings(const PackProblem& problem) {
   }
 }
 
-// Stands in the tray's corner.
+// Stands in the tray's corner, or where a plate with walls has room for it.
 Pose corner_pose(const PackProblem& problem, const Part& part) {
   const WayUp& way = part.ways.front();
   PlacedPart placed{part.items, Pose::Identity(), 0};
   placed.pose.linear() = turn_about_z(way.turn) * way.base;
-  placed.pose.translation() = -bounding_box(placed_mesh(problem, placed)).min();
+  const Mesh standing = placed_mesh(problem, placed);
+  placed.pose.translation() = -bounding_box(standing).min();
+  if (problem.plate.is_whole()) return placed.pose;
+  const std::optional<Vec2> spot = spot_on(problem, standing);
+  if (!spot) throw Error(Fault::kInternal, "A part lost its place on the plate", "");
+  placed.pose.translation().head<2>() = *spot;
   return placed.pose;
 }
 
@@ -236,9 +242,9 @@ Packing put_under(const PackProblem& problem, const Packing& dropped, Packing se
   throw Error(
       Fault::kBadInput,
       fmt::format("Part {} of model {} measures {:.1f} × {:.1f} × {:.1f} mm and fits the "
-                  "build volume of {:.1f} × {:.1f} × {:.1f} mm in no rotation",
+                  "build volume of {:.1f} × {:.1f} × {:.1f} mm{} in no rotation",
                   number, item.model + 1, size.x(), size.y(), size.z(), build.x(), build.y(),
-                  build.z()),
+                  build.z(), problem.plate.is_whole() ? "" : " with the walls of its plate"),
       "Scale the model down, let it be divided into more parts, or choose a larger printer.");
 }
 

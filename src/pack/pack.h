@@ -9,7 +9,8 @@ namespace packmerger {
 
 // Guaranteed of the answer, on the exact meshes:
 //  - every item is in exactly one part, and items of one part keep their places to one another;
-//  - every part lies within [0, build_mm], and one of each tray at least stands on z = 0;
+//  - every part lies within [0, build_mm] and over no wall of the plate (to 1e-6 mm), and one of
+//    each tray at least stands on z = 0;
 //  - two parts of one tray are gap_mm apart at least, in every direction (to 1e-6 mm);
 //  - taken in removal_order, each part can be moved along its removal path, if it has one, and then
 //    be lifted straight up without touching another;

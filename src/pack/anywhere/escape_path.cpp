@@ -47,6 +47,7 @@ class Flood {
         const int x = from.x + dx;
         const int y = from.y + dy;
         if (x < xs_.first || x > xs_.last || y < ys_.first || y > ys_.last) continue;
+        if (!place_.part->barred.empty() && place_.part->barred.at(x, y)) continue;
         for (const int next : stretches_at(x, y)) {
           Stretch& to = stretches_[static_cast<std::size_t>(next)];
           if (to.parent >= -1 || to.last < from.first || to.first > from.last) continue;

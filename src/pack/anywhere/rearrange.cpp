@@ -152,8 +152,13 @@ class Rearranger {
 };
 
 SolidGrid solid_grid(const PackProblem& problem, double cell_mm, bool bounds) {
-  return {problem.build_mm,      cell_mm, height_unit_mm(problem.build_mm.z()), problem.gap_mm,
-          problem.support_angle, bounds};
+  return {problem.build_mm,
+          cell_mm,
+          height_unit_mm(problem.build_mm.z()),
+          problem.gap_mm,
+          problem.support_angle,
+          bounds,
+          PlateMask(problem.plate, problem.build_mm, cell_mm, bounds)};
 }
 
 }  // namespace

@@ -269,6 +269,7 @@ SolidPart solid_part(const std::vector<Mesh>& surfaces, const SolidGrid& grid) {
                     ? bounds(sorted_extents(surfaces, grid.cell_mm), crossings, grid.unit_mm)
                     : part.centres;
   part.outline = outline_of(part.matter);
+  part.barred = grid.mask.barred(footprint_of(part.matter), part.box);
   part.reach = grown(part.matter, grid, grid.gap_mm);
   // From all over the part first, so that a scan soon knows that a position is not free.
   constexpr std::size_t kStride = 16;

@@ -7,6 +7,7 @@
 #include "base/geometry.h"
 #include "model/mesh.h"
 #include "pack/maps/grid.h"
+#include "pack/maps/plate_mask.h"
 
 namespace packmerger {
 
@@ -29,6 +30,7 @@ struct SolidGrid {
   // line through the cell's centre meets. Bounds keep parts apart wherever they are put; samples
   // tell a search on coarse cells what a finer grid will make of its layout.
   bool bounds = true;
+  PlateMask mask{};  // of the same cells and the same kind
 
   int columns() const { return cells_along(build_mm.x(), cell_mm); }
   int rows() const { return cells_along(build_mm.y(), cell_mm); }
@@ -55,6 +57,7 @@ struct SolidPart {
   std::vector<SpanCell> reach;    // the same grown by the gap in every direction, any order
   std::vector<SpanCell> centres;  // what the lines through the cells' centres meet
   Outline outline;                // of `matter`
+  BarredPositions barred;         // by the plate's walls
 };
 
 // surfaces: closed, normals outward, mm, in the frame of the position (0, 0, 0), the lowest point

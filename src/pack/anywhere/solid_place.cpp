@@ -91,16 +91,19 @@ class Scan {
     least_y_ = least_growth(ys, tray_.contents(), part_.box, tray_.grid().cell_mm, 1);
     limit();
     for (int y = ys.first; y <= ys.last; ++y)
-      for (int x = xs.first; x <= xs.last && highest_ >= 0; ++x) look_at(x, y);
+      for (int x = xs.first; x <= xs.last && highest_ >= 0; ++x)
+        if (part_.barred.empty() || !part_.barred.at(x, y)) look_at(x, y);
   }
 
  private:
   Range positions(int axis, const Range& asked) const {
     const SolidGrid& grid = tray_.grid();
     const Range inside = inside_tray(part_.box, grid.build_mm, grid.cell_mm, axis);
-    return intersection(
-        intersection(inside, up_to_bare_plate(tray_.contents(), grid.cell_mm, grid.growth(), axis)),
-        asked);
+    // Beside a wall the bare plate may not be free.
+    const Range useful = part_.barred.empty()
+                             ? up_to_bare_plate(tray_.contents(), grid.cell_mm, grid.growth(), axis)
+                             : kAllCells;
+    return intersection(intersection(inside, useful), asked);
   }
 
   TrayMeasure measure(int x, int y, int z, double support_mm3) const {

@@ -96,9 +96,11 @@ class Scan {
   Range positions(int axis, const Range& asked) const {
     const double cell_mm = spec_.grid.cell_mm;
     const Range inside = inside_tray(part_.box, spec_.build_mm, cell_mm, axis);
-    return intersection(
-        intersection(inside, up_to_bare_plate(tray_.contents, cell_mm, spec_.grid.growth(), axis)),
-        asked);
+    // Beside a wall the bare plate may not be free.
+    const Range useful = part_.barred.empty()
+                             ? up_to_bare_plate(tray_.contents, cell_mm, spec_.grid.growth(), axis)
+                             : kAllCells;
+    return intersection(intersection(inside, useful), asked);
   }
 
   // The bound at the best of these positions.
@@ -195,6 +197,10 @@ class Scan {
     Height* heights = &hunt.heights[index * kFallPositions];
     for (int i = 0; i < kFallPositions; ++i) heights[i] = groups[i / kPool];
     std::fill_n(heights + xs.count(), kFallPositions - xs.count(), kNoPosition);
+    if (!part_.barred.empty()) {
+      for (int i = 0; i < xs.count(); ++i)
+        if (part_.barred.at(first + i, y)) heights[i] = kNoPosition;
+    }
     hunt.blocks.push_back({&tray_.upper.origin()[y * tray_.upper.stride() + first], heights,
                            static_cast<Height>(known)});
     hunt.xs[index] = xs;

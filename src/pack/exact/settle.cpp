@@ -22,12 +22,15 @@ constexpr double kLeastApart_mm = 1e-4;
 constexpr double kOfTheRoom = 0.99;  // what a step may take of it
 
 struct Body {
-  Body(const PackProblem& problem, const PlacedPart& part)
-      : surface(part_mesh(problem, part)),
+  Body(const PackProblem& problem, const PlacedPart& part) : Body(part_mesh(problem, part), part) {}
+  Body(Mesh own_mesh, const PlacedPart& part)
+      : mesh(std::move(own_mesh)),
+        surface(mesh),
         pose(part.pose),
         box(surface.box(part.pose)),
         tray(part.tray) {}
 
+  Mesh mesh;  // model coordinates
   MovableSurface surface;
   Pose pose;
   Box3 box;
@@ -84,6 +87,9 @@ class Settler {
     if (at.box.min().minCoeff() < 0 || (problem_.build_mm - at.box.max()).minCoeff() < 0)
       return false;
     const Body& body = bodies_[index];
+    if (!problem_.plate.surely_clear(at.box) &&
+        problem_.plate.breach_mm(body.mesh, at.pose) > kWallTolerance_mm)
+      return false;
     double room = std::max(gap_mm_, kFirstStep_mm);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const Body& other = bodies_[i];

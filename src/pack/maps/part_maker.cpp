@@ -70,6 +70,7 @@ std::vector<Mesh> turned(std::vector<Mesh> surfaces, const Mat3& rotation) {
 PartMaker::PartMaker(const PackProblem& problem, const Grid& grid, std::function<void()> tick)
     : problem_(problem),
       grid_(grid),
+      mask_(problem.plate, problem.build_mm, grid.cell_mm, grid.bounds),
       tick_(std::move(tick)),
       rotation_set_(rotation_set(problem.rotation_step)) {
   std::vector<Box3> boxes;
@@ -271,6 +272,7 @@ const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& base, int qu
   if (fits(maps.box.sizes(), problem_.build_mm)) {
     *made = quantised(maps, grid_);
     made->rotation = rotation;
+    made->barred = mask_.barred(footprint_of(made->top), made->box);
     made->shift = Vec3(-maps.x0 * grid_.cell_mm, -maps.y0 * grid_.cell_mm, -maps.box.min().z()) -
                   rotation * centres_[static_cast<std::size_t>(part.model)];
     made->inside_support_mm3 =

@@ -13,6 +13,7 @@
 
 #include "model/packing.h"
 #include "pack/maps/merge.h"
+#include "pack/maps/plate_mask.h"
 #include "pack/maps/rotated_part.h"
 #include "pack/maps/rotations.h"
 #include "pack/maps/ways_up.h"
@@ -71,6 +72,7 @@ class PartMaker {
 
   const PackProblem& problem_;
   Grid grid_;
+  PlateMask mask_;
   std::function<void()> tick_;
   RotationSet rotation_set_;
   std::vector<Vec3> centres_;  // by model

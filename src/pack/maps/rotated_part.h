@@ -6,6 +6,7 @@
 #include "base/geometry.h"
 #include "pack/maps/depth_map.h"
 #include "pack/maps/grid.h"
+#include "pack/maps/plate_mask.h"
 
 namespace packmerger {
 
@@ -22,6 +23,7 @@ struct RotatedPart {
   std::vector<HeightCell> hang;   // the lowest matter there, where it needs support
   std::int64_t hang_sum = 0;      // of the values of `hang`
   double inside_support_mm3 = 0;  // between the part's own surfaces
+  BarredPositions barred;         // by the plate's walls
 };
 
 struct Grid {
@@ -40,7 +42,7 @@ struct Grid {
 // the lowest of every few, the lower ones before the higher ones; the others behind them.
 std::vector<HeightCell> decisive_first(const std::vector<HeightCell>& cells);
 
-// rotation, shift and inside support are the caller's.
+// rotation, shift, inside support and barred positions are the caller's.
 RotatedPart quantised(const DepthMaps& maps, const Grid& grid);
 
 // Without those that look the same to the packer as an earlier one: a symmetry of the part makes

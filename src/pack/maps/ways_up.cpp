@@ -46,7 +46,17 @@ Mat3 nudged(const Mat3& rotation, double reach, Random& random) {
   return Eigen::AngleAxisd(reach * random.unit(), axis.normalized()).toRotationMatrix() * rotation;
 }
 
+Mesh united(const std::vector<Mesh>& surfaces) {
+  std::vector<const Mesh*> members;
+  for (const Mesh& surface : surfaces) members.push_back(&surface);
+  return united(members);
+}
+
 }  // namespace
+
+std::optional<Vec2> spot_on(const PackProblem& problem, const Mesh& standing) {
+  return problem.plate.spot_for(standing, problem.build_mm.head<2>());
+}
 
 bool fits(const Vec3& size_mm, const Vec3& build_mm) {
   return excess(size_mm, build_mm) <= kFitTolerance_mm;
@@ -69,6 +79,12 @@ std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vect
   const auto extent = [](const Eigen::ArrayXd& along) {
     return along.size() > 0 ? along.maxCoeff() - along.minCoeff() : 0;
   };
+  Mesh whole;  // all surfaces, where a plate needs them
+  const auto stands_clear = [&](double turn) {
+    if (problem.plate.is_whole()) return true;
+    if (whole.empty()) whole = united(standing);
+    return spot_on(problem, transformed(whole, Pose(turn_about_z(turn)))).has_value();
+  };
   // Support hardly depends on the turn; the box does, so the cheapest box decides.
   std::optional<Turn> best;
   double least = 0;
@@ -81,6 +97,7 @@ std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vect
     if (!fits(size, problem.build_mm)) continue;
     const double cost = problem.cost.evaluate({size, 0, 0, 1});
     if (best && cost >= least - 1e-9 * std::abs(least)) continue;
+    if (!stands_clear(turn)) continue;
     least = cost;
     best = Turn{turn, size};
   }
@@ -92,16 +109,24 @@ std::optional<FittingWay> way_up_that_fits(const std::vector<Mesh>& surfaces,
   Random random(0);  // of no consequence for the packing's own seed
   Mat3 best = Mat3::Identity();
   double least = std::numeric_limits<double>::infinity();
+  // Whether it is the answer: where the plate has walls, the first that stands clear of them.
   const auto consider = [&](const Mat3& rotation) {
     const double over = excess(size_turned(surfaces, rotation), problem.build_mm);
-    if (over >= least) return;
-    least = over;
-    best = rotation;
+    if (over < least) {
+      least = over;
+      best = rotation;
+    }
+    if (problem.plate.is_whole() || over > kFitTolerance_mm) return false;
+    const bool clear = spot_on(problem, transformed(united(surfaces), Pose(rotation))).has_value();
+    if (clear) best = rotation;
+    return clear;
   };
-  for (int i = 0; i < kFitSamples; ++i) consider(random_rotation(random));
-  for (int i = 0; i < kFitRefinements; ++i)
-    consider(nudged(best, 0.3 * (1 - static_cast<double>(i) / kFitRefinements), random));
-  if (least > kFitTolerance_mm) return std::nullopt;
+  bool found = false;
+  for (int i = 0; i < kFitSamples && !found; ++i) found = consider(random_rotation(random));
+  for (int i = 0; i < kFitRefinements && !found; ++i)
+    found = consider(nudged(best, 0.3 * (1 - static_cast<double>(i) / kFitRefinements), random));
+  if (problem.plate.is_whole()) found = least <= kFitTolerance_mm;
+  if (!found) return std::nullopt;
   return FittingWay{best, size_turned(surfaces, best)};
 }
 

@@ -25,7 +25,8 @@ struct Turn {
 };
 
 // The turn about the vertical in which the surfaces together, standing as they are given, fit the
-// build volume at the least cost of their box; of equal ones the first. Empty where none fits.
+// build volume and the plate at the least cost of their box; of equal ones the first. Empty where
+// none fits.
 std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vector<double>& turns,
                               const PackProblem& problem);
 
@@ -46,6 +47,10 @@ std::vector<Vec3> flat_facets(const std::vector<Mesh>& surfaces);
 // Ways up in which the surfaces stand on a large flat facet of theirs; the largest first, at most
 // `most`.
 std::vector<Mat3> ways_on_flat_facets(const std::vector<Mesh>& surfaces, std::size_t most);
+
+// Where a surface stands clear of the plate's walls, as a shift in x and y; empty where it does
+// nowhere.
+std::optional<Vec2> spot_on(const PackProblem& problem, const Mesh& standing);
 
 // Whether a box fits the build volume, to within rounding.
 bool fits(const Vec3& size_mm, const Vec3& build_mm);
