@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace packmerger {
@@ -58,6 +60,20 @@ Polygon clipped(const Polygon& polygon, const Vec2& outward, double offset) {
   return kept;
 }
 
+// What is nearer than margin_mm to a side, and a little more.
+Polygon grown_side(const Vec2& a, const Vec2& b, double margin_mm) {
+  constexpr int kCorners = 8;
+  const double reach_mm = margin_mm / std::cos(std::numbers::pi / kCorners);
+  std::vector<Vec2> points;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + 0.5) / kCorners;
+    const Vec2 out = reach_mm * Vec2(std::cos(angle), std::sin(angle));
+    points.push_back(a + out);
+    points.push_back(b + out);
+  }
+  return convex_hull(std::move(points));
+}
+
 // A flat fan over a convex polygon.
 TriangleSoup fan(const Polygon& hull) {
   TriangleSoup soup;
@@ -88,12 +104,35 @@ Plate::Plate(const Polygon& outline, const std::vector<Polygon>& kept_out) {
   }
 }
 
+Plate Plate::drawn_in(const Vec2& corner, double margin_mm) const {
+  Polygon hull = hull_;
+  for (const Side& side : sides_) hull = clipped(hull, side.outward, side.offset - margin_mm);
+  std::vector<Polygon> barred = barred_;
+  if (hull.size() < 3 || std::abs(signed_area_mm2(hull)) <= 0) {
+    if (!hull_.empty()) barred.push_back(hull_);  // the margin leaves nothing
+    hull = hull_;
+  }
+  if (margin_mm > 0)
+    for (const Polygon& area : barred_)
+      for (std::size_t i = 0; i < area.size(); ++i)
+        barred.push_back(grown_side(area[i], area[(i + 1) % area.size()], margin_mm));
+  for (Vec2& at : hull) at -= corner;
+  for (Polygon& area : barred)
+    for (Vec2& at : area) at -= corner;
+  return {hull, barred};
+}
+
 Plate::Wall Plate::nearest_wall(const Vec2& at) const {
-  Wall nearest;
+  Wall nearest = nearest_barred(at);
   for (const Side& side : sides_) {
     const double clearance = side.offset - side.outward.dot(at);
     if (clearance < nearest.clearance_mm) nearest = {clearance, -side.outward};
   }
+  return nearest;
+}
+
+Plate::Wall Plate::nearest_barred(const Vec2& at) const {
+  Wall nearest;
   for (const Polygon& area : barred_) {
     const Vec2 border = nearest_on_border(area, at);
     const double distance = (border - at).norm();
@@ -176,14 +215,15 @@ std::optional<Vec2> Plate::spot_for(const TriangleView& surface, const Vec2& roo
   Vec2 middle = Vec2::Zero();
   for (const Vec2& shift : shifts) middle += shift / static_cast<double>(shifts.size());
   if (barred_.empty()) return middle;
-  std::vector<Vec2> tried{middle};
-  tried.insert(tried.end(), shifts.begin(), shifts.end());
+  std::vector<Vec2> tried;
   const Eigen::AlignedBox2d range = bounding_box(shifts);
   for (int y = 0; y < kLattice; ++y)
     for (int x = 0; x < kLattice; ++x) {
       const Vec2 at = range.min() + range.sizes().cwiseProduct(Vec2(x, y)) / (kLattice - 1);
       if (contains(shifts, at)) tried.push_back(at);
     }
+  tried.insert(tried.end(), shifts.begin(), shifts.end());
+  tried.push_back(middle);
   // The hull is looked at first: where it stands clear the surface does, and it is far smaller.
   const TriangleSoup of_hull = fan(hull);
   for (const TriangleView& looked_at : {TriangleView(of_hull), surface})

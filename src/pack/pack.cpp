@@ -220,6 +220,13 @@ Packing with_gaps_kept(const std::function<Packing(Finisher&)>& finish, const Gr
               "Set a smaller grid_mm or a larger gap_mm, and report this model.");
 }
 
+bool keeps_off_walls(const Packing& packing, const PackProblem& problem) {
+  if (problem.plate.is_whole()) return true;
+  return std::all_of(packing.parts.begin(), packing.parts.end(), [&](const PlacedPart& part) {
+    return problem.plate.breach_mm(part_mesh(problem, part), part.pose) <= kWallTolerance_mm;
+  });
+}
+
 // With parts in cavities and under overhangs too, where that is cheaper on the exact meshes. Where
 // other things than height count, parts are put back one by one; that begins with the tray before
 // it settled: columns of bounds don't see how parts closer than that come apart.
@@ -232,7 +239,8 @@ Packing put_under(const PackProblem& problem, const Packing& dropped, Packing se
   if (!better) return settled;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);
   measure(problem, *better);
-  const bool kept = problem.gap_mm - least_gap_mm(*better, problem) <= kGapTolerance_mm;
+  const bool kept = problem.gap_mm - least_gap_mm(*better, problem) <= kGapTolerance_mm &&
+                    keeps_off_walls(*better, problem);
   return kept && better->cost < settled.cost ? *better : settled;
 }
 

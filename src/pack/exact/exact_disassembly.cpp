@@ -25,8 +25,10 @@ Vec3 moved_mm(const Lattice& at) { return kStep_mm * Vec3(at[0], at[1], at[2]); 
 
 class Dismantler {
  public:
-  Dismantler(const std::vector<Mesh>& parts, const Vec2& base_mm, const Progress& progress)
-      : base_mm_(base_mm), progress_(progress) {
+  // All must outlive it.
+  Dismantler(const std::vector<Mesh>& parts, const Vec2& base_mm, const Plate& plate,
+             const Progress& progress)
+      : parts_(parts), base_mm_(base_mm), plate_(plate), progress_(progress) {
     for (const Mesh& part : parts) {
       boxes_.push_back(bounding_box(part));
       tops_.emplace_back(part, true);
@@ -107,6 +109,9 @@ class Dismantler {
         (base_mm_ - there.max().head<2>()).minCoeff() < -kInside_mm)
       return false;
     const Pose at(Eigen::Translation3d{moved});
+    if (!plate_.surely_clear(there) &&
+        plate_.breach_mm(parts_[static_cast<std::size_t>(part)], at) > kWallTolerance_mm)
+      return false;
     return std::none_of(there_.begin(), there_.end(), [&](int other) {
       return other != part && there.exteriorDistance(box(other)) < kRoom_mm &&
              surface_distance_mm(surfaces_[static_cast<std::size_t>(part)], at,
@@ -167,7 +172,9 @@ class Dismantler {
     return steps;
   }
 
+  const std::vector<Mesh>& parts_;
   Vec2 base_mm_;
+  const Plate& plate_;
   const Progress& progress_;
   std::vector<Box3> boxes_;
   std::vector<Facing> tops_;
@@ -181,8 +188,8 @@ class Dismantler {
 }  // namespace
 
 ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,
-                                   const Progress& progress) {
-  return Dismantler(parts, base_mm, progress).run();
+                                   const Progress& progress, const Plate& plate) {
+  return Dismantler(parts, base_mm, plate, progress).run();
 }
 
 }  // namespace packmerger

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "model/mesh.h"
+#include "model/plate.h"
 
 namespace packmerger {
 
@@ -16,11 +17,11 @@ struct ExactDisassembly {
 };
 
 // Parts that can be lifted straight up go first, the highest before the others; where none can, the
-// first that finds a path, by steps of half a millimetre, along which it stays within the base and
-// apart from those that are still there (sweep.h). The first of two searches looks at so few
-// positions that what comes out easily is soon found.
-// parts: closed, where they stand on one tray, mm.
+// first that finds a path, by steps of half a millimetre, along which it stays within the base,
+// over no wall of the plate, and apart from those that are still there (sweep.h). The first of two
+// searches looks at so few positions that what comes out easily is soon found. parts: closed, where
+// they stand on one tray, mm.
 ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,
-                                   const Progress& progress);
+                                   const Progress& progress, const Plate& plate = {});
 
 }  // namespace packmerger

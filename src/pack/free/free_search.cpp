@@ -77,8 +77,9 @@ class FreeSearch {
         start_(start),
         pace_(pace),
         random_(seed),
-        separation_(pointers(), problem.build_mm.head<2>(), problem.gap_mm,
-                    [this] { return is_over(1); }),
+        separation_(
+            pointers(), problem.build_mm.head<2>(), problem.gap_mm, [this] { return is_over(1); },
+            problem.plate),
         began_(pace.passed()),
         time_(share * (1 - began_)) {
     lowest_mm_ = separation_.height_mm(start);
@@ -116,7 +117,7 @@ class FreeSearch {
   void lower_on_lattice(double until) {
     if (!lattice_)
       lattice_.emplace(FreeParts{pointers(), right_angles()}, problem_.build_mm.head<2>(),
-                       std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_,
+                       problem_.plate, std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_,
                        random_.bits());
     std::size_t rounds = 0;
     int stuck_layouts = 0;
@@ -187,7 +188,8 @@ class FreeSearch {
     for (std::size_t i = 0; i < poses.size(); ++i)
       placed.push_back(transformed(shapes_[i]->mesh, poses[i]));
     if (plan_.order.empty() || first_obstacle(placed, plan_.order, plan_.paths, progress)) {
-      ExactDisassembly plan = exact_disassembly(placed, problem_.build_mm.head<2>(), progress);
+      ExactDisassembly plan =
+          exact_disassembly(placed, problem_.build_mm.head<2>(), progress, problem_.plate);
       if (!plan.stuck.empty()) return plan.stuck;
       plan_ = std::move(plan);
     }

@@ -7,8 +7,7 @@
 namespace packmerger {
 namespace {
 
-constexpr double kThreshold = 0.45;  // cells
-constexpr double kRounding = 1e-4;   // cells
+constexpr double kRounding = 1e-4;  // cells
 constexpr std::ptrdiff_t kReadAhead = 8;
 constexpr std::array<int, 4> kStrides{8, 4, 2, 1};
 
@@ -58,7 +57,7 @@ BitPart bit_part(const Shape& shape, const Mat3& rotation, const BitGrid& grid, 
   part.depth = cells(box.sizes().y(), grid.cell_mm);
   const int layers = cells(box.sizes().z(), grid.unit_mm);
   if (layers >= kHeights) return part;
-  const auto reach = static_cast<float>(apart_mm / 2 + kThreshold * grid.cell_mm);
+  const auto reach = static_cast<float>(apart_mm / 2 + kMatterReach * grid.cell_mm);
   const Mat3 back = rotation.transpose();
   const Vec3f up = (back * Vec3(0, 0, grid.unit_mm)).cast<float>();
   std::vector<BitRun> runs;
@@ -85,6 +84,10 @@ HeightBits::HeightBits(const BitGrid& grid)
     : columns_(grid.columns), rows_(grid.rows), stride_(grid.columns + kReadAhead) {
   for (auto& plane : planes_)
     plane.assign(static_cast<std::size_t>(stride_ * rows_ + kReadAhead), 0);
+}
+
+void HeightBits::bar(int x, int y) {
+  for (auto& plane : planes_) plane[static_cast<std::size_t>(y * stride_ + x)] = ~std::uint64_t{0};
 }
 
 void HeightBits::change(const BitPart& part, int x, int y, int z, bool filled) {

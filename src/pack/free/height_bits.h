@@ -12,6 +12,8 @@
 namespace packmerger {
 
 inline constexpr int kHeights = 64;
+// Cells: so far outside of matter a cell's centre may lie where it holds some.
+inline constexpr double kMatterReach = 0.45;
 
 // The lattice: cells along x and y, heights along z.
 struct BitGrid {
@@ -44,8 +46,8 @@ struct BitPart {
 };
 
 // apart_mm: what two parts keep from one another; each is grown by half of it. Nearly
-// conservative: a cell holds matter where its centre is no further than `threshold` cells outside,
-// so that what the lattice lets overlap can be separated without room to spare.
+// conservative: a cell holds matter where its centre is no further than kMatterReach outside, so
+// that what the lattice lets overlap can be separated without room to spare.
 // Empty runs where the part is higher than the lattice.
 BitPart bit_part(const Shape& shape, const Mat3& rotation, const BitGrid& grid, double apart_mm);
 
@@ -55,6 +57,9 @@ class HeightBits {
   static constexpr int kPlanes = 6;
 
   explicit HeightBits(const BitGrid& grid);
+
+  // A wall: no part may stand over the cell at any height, for good.
+  void bar(int x, int y);
 
   // No bit of the part may be set, or all of them.
   void fill(const BitPart& part, int x, int y, int z) { change(part, x, y, z, true); }

@@ -52,16 +52,31 @@ BitGrid grid_for(const FreeParts& parts, const Vec2& base_mm, double apart_mm, d
   return grid;
 }
 
+// Walls reach half of apart_mm less far than they stand: parts are grown by so much, but may touch
+// them.
+HeightBits tray_with_walls(const BitGrid& grid, const Plate& plate, double apart_mm) {
+  HeightBits tray(grid);
+  if (plate.is_whole()) return tray;
+  const double least_mm = kMatterReach * grid.cell_mm - apart_mm / 2;
+  for (int y = 0; y < grid.rows; ++y)
+    for (int x = 0; x < grid.columns; ++x) {
+      const Vec2 centre = grid.cell_mm * Vec2(x + 0.5, y + 0.5) - Vec2::Constant(apart_mm / 2);
+      if (plate.nearest_wall(centre).clearance_mm <= least_mm) tray.bar(x, y);
+    }
+  return tray;
+}
+
 }  // namespace
 
-LimitSearch::LimitSearch(FreeParts parts, const Vec2& base_mm, double apart_mm,
+LimitSearch::LimitSearch(FreeParts parts, const Vec2& base_mm, const Plate& plate, double apart_mm,
                          const std::vector<Pose>& start, double start_height_mm, std::uint64_t seed)
     : parts_(std::move(parts)),
       base_mm_(base_mm),
       apart_mm_(apart_mm),
       random_(seed),
       grid_(grid_for(parts_, base_mm, apart_mm, start_height_mm + apart_mm)),
-      tray_(grid_),
+      bare_(tray_with_walls(grid_, plate, apart_mm)),
+      tray_(bare_),
       limit_mm_(start_height_mm + apart_mm),
       drawn_for_mm_(limit_mm_),
       shrink_(kLeastShrink),
@@ -128,7 +143,7 @@ void LimitSearch::begin(const std::vector<Pose>& start) {
     best = puts_;
   }
   if (!best.empty()) {
-    tray_ = HeightBits(grid_);
+    tray_ = bare_;
     puts_ = best;
     for (std::size_t i = 0; i < puts_.size(); ++i) fill(static_cast<int>(i));
     return;
@@ -156,7 +171,7 @@ void LimitSearch::begin(const std::vector<Pose>& start) {
 }
 
 bool LimitSearch::greedy(bool largest_first) {
-  tray_ = HeightBits(grid_);
+  tray_ = bare_;
   std::fill(placed_.begin(), placed_.end(), 0);
   std::vector<double> keys;
   for (const double size : size_)
@@ -172,7 +187,7 @@ bool LimitSearch::greedy(bool largest_first) {
 
 // Where they were, as high as they were or nearly so; what has no room there stays out.
 void LimitSearch::put_nearest(const std::vector<Put>& puts, double old_unit_mm) {
-  tray_ = HeightBits(grid_);
+  tray_ = bare_;
   std::fill(placed_.begin(), placed_.end(), 0);
   std::vector<int> parts(puts.size());
   std::iota(parts.begin(), parts.end(), 0);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "model/plate.h"
 #include "pack/free/lowest_place.h"
 
 namespace packmerger {
@@ -21,10 +22,11 @@ struct FreeParts {
 
 class LimitSearch {
  public:
-  // start: poses of the shapes' frames, a layout that lies within the base, and what its height
-  // is; parts that the lattice finds too close are put back elsewhere. shapes must outlive it.
-  LimitSearch(FreeParts parts, const Vec2& base_mm, double apart_mm, const std::vector<Pose>& start,
-              double start_height_mm, std::uint64_t seed);
+  // plate: its walls within the base. start: poses of the shapes' frames, a layout that lies within
+  // the base, and what its height is; parts that the lattice finds too close are put back
+  // elsewhere. shapes must outlive it.
+  LimitSearch(FreeParts parts, const Vec2& base_mm, const Plate& plate, double apart_mm,
+              const std::vector<Pose>& start, double start_height_mm, std::uint64_t seed);
 
   // Rounds until all parts lie below the limit; false where is_over says so before.
   bool next(const std::function<bool()>& is_over);
@@ -70,6 +72,7 @@ class LimitSearch {
   std::vector<std::vector<Mat3>> ways_;      // by shape: without twins
   std::vector<std::vector<BitPart>> drawn_;  // by shape and way
   BitGrid grid_;
+  HeightBits bare_;  // nothing but walls
   HeightBits tray_;
   double limit_mm_;  // with the room that parts keep from one another, as all heights here
   double drawn_for_mm_;

@@ -81,6 +81,46 @@ Push met_walls(const Shape& shape, const Pose& pose, const Vec3& box_mm, double 
   return push;
 }
 
+// Of the part on the sides of the plate's hull: what stands out tells how far.
+void meet_hull(Push& push, const Shape& shape, const Pose& pose, const Plate& plate,
+               double room_mm) {
+  const Vec2 centre = pose.translation().head<2>();
+  for (const Plate::Side& side : plate.sides()) {
+    const double left_mm = side.offset - room_mm - side.outward.dot(centre);
+    if (left_mm >= shape.radius_mm) continue;
+    const Vec3 inward(-side.outward.x(), -side.outward.y(), 0);
+    for (const Vec3& point : shape.outermost) {
+      const Vec3 arm = pose.linear() * point;
+      const double lacking = -inward.dot(arm) - left_mm;
+      if (lacking <= 0) continue;
+      push.deepest_mm = std::max(push.deepest_mm, kWallDepth * lacking);
+      add(push, kWallWeight, lacking, inward, arm);
+    }
+  }
+}
+
+// On barred areas: these may reach into what is hollow, seen from above.
+void meet_barred(Push& push, const Shape& shape, const Pose& pose, const Plate& plate,
+                 double room_mm) {
+  if (plate.barred().empty()) return;
+  const auto clearance = [&](const Vec3& at) {
+    return plate.nearest_barred(at.head<2>()).clearance_mm;
+  };
+  if (clearance(pose.translation()) >= shape.radius_mm + room_mm) return;
+  for (const SampleBall& ball : shape.balls) {
+    const Vec3 middle = pose * ball.centre.cast<double>();
+    if (clearance(middle) >= static_cast<double>(ball.radius) + room_mm) continue;
+    for (const Vec3f& sample : ball.samples) {
+      const Vec3 arm = pose.linear() * sample.cast<double>();
+      const Plate::Wall wall = plate.nearest_barred((arm + pose.translation()).head<2>());
+      const double lacking = room_mm - wall.clearance_mm;
+      if (lacking <= 0) continue;
+      push.deepest_mm = std::max(push.deepest_mm, lacking);
+      add(push, 1, lacking, Vec3(wall.away.x(), wall.away.y(), 0), arm);
+    }
+  }
+}
+
 struct Pair {
   std::size_t one = 0;
   std::size_t other = 0;
@@ -100,7 +140,7 @@ std::vector<Pair> close_pairs(const std::vector<const Shape*>& shapes,
 }  // namespace
 
 Overlap overlap(const std::vector<const Shape*>& shapes, const std::vector<Pose>& poses,
-                const Vec3& box_mm, const Rooms& rooms) {
+                const Vec3& box_mm, const Rooms& rooms, const Plate& plate) {
   const std::vector<Pair> pairs = close_pairs(shapes, poses, rooms);
   std::vector<Push> pushes(pairs.size());
   parallel_for(pairs.size(), [&](std::size_t k) {
@@ -129,7 +169,10 @@ Overlap overlap(const std::vector<const Shape*>& shapes, const std::vector<Pose>
     enter(one, force, torque - arm.cross(force));
   }
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const Push push = met_walls(*shapes[i], poses[i], box_mm, kWallRoom_mm + rooms.wall(i));
+    const double wall_mm = kWallRoom_mm + rooms.wall(i);
+    Push push = met_walls(*shapes[i], poses[i], box_mm, wall_mm);
+    meet_hull(push, *shapes[i], poses[i], plate, wall_mm);
+    meet_barred(push, *shapes[i], poses[i], plate, wall_mm);
     result.energy += push.energy;
     result.deepest_mm = std::max(result.deepest_mm, push.deepest_mm);
     enter(i, push.force, push.torque);

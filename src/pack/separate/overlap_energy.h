@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "model/plate.h"
 #include "pack/separate/shape.h"
 
 namespace packmerger {
@@ -35,10 +36,10 @@ struct Overlap {
   Eigen::VectorXd gradient;  // six a part: turn (mm at its radius), then translation
 };
 
-// box_mm: the parts are to lie within [0, box_mm]. Poses are of the shapes' own frames. The same
-// bits on any number of threads.
+// box_mm: the parts are to lie within [0, box_mm], and over no wall of the plate. Poses are of the
+// shapes' own frames. The same bits on any number of threads.
 Overlap overlap(const std::vector<const Shape*>& shapes, const std::vector<Pose>& poses,
-                const Vec3& box_mm, const Rooms& rooms);
+                const Vec3& box_mm, const Rooms& rooms, const Plate& plate = {});
 
 // The poses moved by six numbers a part, as in the gradient.
 std::vector<Pose> moved(const std::vector<const Shape*>& shapes, const std::vector<Pose>& poses,

@@ -28,9 +28,10 @@ constexpr double kTold_mm = 0.1;  // beyond what is asked for
 }  // namespace
 
 Separation::Separation(std::vector<const Shape*> shapes, const Vec2& base_mm, double gap_mm,
-                       std::function<bool()> is_over)
+                       std::function<bool()> is_over, Plate plate)
     : shapes_(std::move(shapes)),
       base_mm_(base_mm),
+      plate_(std::move(plate)),
       apart_mm_(std::max(gap_mm, kLeastApart_mm)),
       is_over_(std::move(is_over)) {}
 
@@ -54,7 +55,7 @@ double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const 
                             int most_steps) const {
   const std::vector<Pose> from = poses;
   Eigen::VectorXd at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * poses.size()));
-  Overlap here = overlap(shapes_, poses, box_mm, rooms);
+  Overlap here = overlap(shapes_, poses, box_mm, rooms, plate_);
   QuasiNewton memory;
   int fresh_starts = 0;
   double looked_at = here.energy;
@@ -73,7 +74,7 @@ double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const 
     for (int halving = 0; halving < kHalvings && !is_lower; ++halving, length *= kShorter) {
       const Eigen::VectorXd next_at = at + length * direction;
       std::vector<Pose> next_poses = moved(shapes_, from, next_at);
-      Overlap next = overlap(shapes_, next_poses, box_mm, rooms);
+      Overlap next = overlap(shapes_, next_poses, box_mm, rooms, plate_);
       if (next.energy > here.energy + kSufficient * length * slope) continue;
       is_lower = true;
       memory.learn(next_at - at, next.gradient - here.gradient);
@@ -100,7 +101,9 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Box3 box = shapes_[i]->surface.box(poses[i]);
-    const double outside = std::max(-box.min().minCoeff(), (box.max() - box_mm).maxCoeff());
+    double outside = std::max(-box.min().minCoeff(), (box.max() - box_mm).maxCoeff());
+    if (!plate_.surely_clear(box))
+      outside = std::max(outside, plate_.breach_mm(shapes_[i]->mesh, poses[i]));
     if (outside > 0) {
       rooms.widen_wall(i, outside + kWidenBy_mm / 3);
       close = true;

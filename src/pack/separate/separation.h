@@ -16,13 +16,14 @@ inline constexpr double kLeastApart_mm = 0.025;
 
 class Separation {
  public:
-  // base_mm: x and y of the tray. is_over says that time is up; it may throw to cancel.
+  // base_mm: x and y of the tray. is_over says that time is up; it may throw to cancel. plate: its
+  // walls within the base.
   Separation(std::vector<const Shape*> shapes, const Vec2& base_mm, double gap_mm,
-             std::function<bool()> is_over);
+             std::function<bool()> is_over, Plate plate = {});
 
-  // Moves the parts so that they lie within the base up to the height, and gap_mm (and
-  // kLeastApart_mm) apart on the exact meshes. False where that did not succeed; the poses are then
-  // as they were.
+  // Moves the parts so that they lie within the base up to the height and over no wall, and gap_mm
+  // (and kLeastApart_mm) apart on the exact meshes. False where that did not succeed; the poses are
+  // then as they were.
   bool separate(std::vector<Pose>& poses, double height_mm, int most_steps) const;
 
   double height_mm(const std::vector<Pose>& poses) const;
@@ -34,6 +35,7 @@ class Separation {
 
   std::vector<const Shape*> shapes_;
   Vec2 base_mm_;
+  Plate plate_;
   double apart_mm_;
   std::function<bool()> is_over_;
 };

@@ -236,23 +236,14 @@ TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   EXPECT_EQ(none.stuck, (std::vector<int>{0, 1}));
 }
 
-PackProblem low_problem(std::vector<Mesh> meshes, const Vec3& build_mm, double gap_mm) {
-  PackProblem problem = shapes::problem_of(std::move(meshes), build_mm);
-  problem.gap_mm = gap_mm;
-  problem.anywhere = true;
-  problem.tabu_patience = 1;
-  problem.cost.evaluate = [](const TrayMeasure& tray) { return tray.size_mm.z(); };
-  problem.cost.lower_bound = problem.cost.evaluate;
-  return problem;
-}
-
 // Every tray keeps what pack.h promises, and is no higher than without the search.
 TEST(FreeSearch, KeepsWhatIsPromised) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     Random random(seed);
     std::vector<Mesh> meshes;
     for (int i = 0; i < 6; ++i) meshes.push_back(shapes::random_solid(random));
-    PackProblem problem = low_problem(std::move(meshes), Vec3(30, 30, 80), seed % 2 == 0 ? 0 : 0.6);
+    PackProblem problem =
+        shapes::low_problem(std::move(meshes), Vec3(30, 30, 80), seed % 2 == 0 ? 0 : 0.6);
     problem.seed = seed;
     const Packing free = pack(problem, {});
     check::expect_valid(problem, free, 0.25);
@@ -265,7 +256,7 @@ TEST(FreeSearch, KeepsWhatIsPromisedOnSeveralTrays) {
   std::vector<Mesh> meshes;
   for (int i = 0; i < 2; ++i)
     for (const Mesh& mesh : shapes::solids()) meshes.push_back(mesh);
-  const PackProblem problem = low_problem(std::move(meshes), Vec3(24, 24, 18), 0.5);
+  const PackProblem problem = shapes::low_problem(std::move(meshes), Vec3(24, 24, 18), 0.5);
   const Packing packing = pack(problem, {});
   EXPECT_GT(packing.trays.size(), 1U);
   check::expect_valid(problem, packing, 0.25);
@@ -275,7 +266,7 @@ TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
   Random random(5);
   std::vector<Mesh> meshes;
   for (int i = 0; i < 6; ++i) meshes.push_back(shapes::random_solid(random));
-  PackProblem problem = low_problem(std::move(meshes), Vec3(28, 28, 80), 0.4);
+  PackProblem problem = shapes::low_problem(std::move(meshes), Vec3(28, 28, 80), 0.4);
   const Packing two = pack(problem, {});
   const ThreadLimit limit(1);
   const Packing one = pack(problem, {});
@@ -288,7 +279,7 @@ TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
 // The chamber is the lowest place that there is, again and again.
 TEST(FreeSearch, EndsWhereTheLowestPlaceHasNoWayOut) {
   const PackProblem problem =
-      low_problem({shut_box(), shapes::box(Vec3(6, 6, 6))}, Vec3(22, 22, 40), 0);
+      shapes::low_problem({shut_box(), shapes::box(Vec3(6, 6, 6))}, Vec3(22, 22, 40), 0);
   const Packing packing = pack(problem, {});
   check::expect_valid(problem, packing, 0.25);
   EXPECT_GT(packing.trays[0].size_mm.z(), 25);
@@ -299,7 +290,7 @@ TEST(FreeSearch, FindsALowerTrayThanDropping) {
   for (int i = 0; i < 3; ++i) meshes.push_back(shapes::cup(9, 16, 2, 16));
   for (int i = 0; i < 3; ++i) meshes.push_back(shapes::sphere(6, 12));
   for (int i = 0; i < 4; ++i) meshes.push_back(shapes::l_shape(18, 5, 9));
-  PackProblem problem = low_problem(std::move(meshes), Vec3(40, 40, 90), 0);
+  PackProblem problem = shapes::low_problem(std::move(meshes), Vec3(40, 40, 90), 0);
   const Packing free = pack(problem, {});
   check::expect_valid(problem, free, 0.25);
   problem.anywhere = false;

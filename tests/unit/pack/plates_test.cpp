@@ -8,8 +8,10 @@
 #include <optional>
 
 #include "base/random.h"
+#include "pack/exact/exact_disassembly.h"
 #include "pack/maps/plate_mask.h"
 #include "pack/pack.h"
+#include "pack/separate/separation.h"
 #include "unit/pack/check.h"
 #include "unit/pack/problems.h"
 
@@ -109,6 +111,76 @@ TEST(PackOnPlates, NothingStandsOverAWall) {
     }
   }
   EXPECT_GE(packed, 7);
+}
+
+TEST(PackOnPlates, WhatStandsAnywhereStandsOverNoWallEither) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 2; ++i) meshes.push_back(shapes::cup(8, 14, 2, 12));
+  for (int i = 0; i < 2; ++i) meshes.push_back(shapes::sphere(5, 10));
+  for (int i = 0; i < 4; ++i) meshes.push_back(shapes::l_shape(16, 4, 8));
+  PackProblem problem = shapes::low_problem(std::move(meshes), Vec3(44, 42, 90), 0.5);
+  const Walls walls{regular(Vec2(22, 21), 22, 8, 0.3), {regular(Vec2(30, 22), 3, 5)}};
+  problem.plate = Plate(walls.outline, walls.kept_out);
+  const Packing packing = pack(problem, Progress());
+  check::expect_valid(problem, packing, 0.25);
+  expect_clear(problem, packing, walls);
+  problem.anywhere = false;
+  EXPECT_LT(packing.cost, 0.95 * pack(problem, Progress()).cost);
+}
+
+TEST(SeparationOnPlates, MovesPartsOffTheWalls) {
+  const Shape cube(shapes::box(Vec3(10, 10, 10)), 3);
+  // Lies flat, with the kept-out area between its legs.
+  const Shape angle(
+      shapes::turned(shapes::l_shape(18, 5, 10),
+                     Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()).toRotationMatrix()),
+      3);
+  const Walls walls{regular(Vec2(20, 20), 20, 12), {regular(Vec2(24, 20), 3, 6)}};
+  const Plate plate(walls.outline, walls.kept_out);
+  std::vector<Pose> poses(2, Pose::Identity());
+  poses[0].translation() = Vec3(8, 12, 6);
+  poses[1].translation() = Vec3(26, 21, 6);
+  const std::vector<const Shape*> shapes{&cube, &angle};
+  EXPECT_GT(plate.breach_mm(cube.mesh, poses[0]), 0.1);
+  EXPECT_GT(plate.breach_mm(angle.mesh, poses[1]), 0.1);
+  const Vec3 box_mm(40, 40, 14);
+  const Overlap here = overlap(shapes, poses, box_mm, Rooms(2, 0.5), plate);
+  for (Eigen::Index k = 0; k < here.gradient.size(); ++k) {
+    constexpr double kStep = 1e-5;
+    const auto energy = [&](double step) {
+      const Eigen::VectorXd by = step * Eigen::VectorXd::Unit(here.gradient.size(), k);
+      return overlap(shapes, moved(shapes, poses, by), box_mm, Rooms(2, 0.5), plate).energy;
+    };
+    EXPECT_NEAR(here.gradient[k], (energy(kStep) - energy(-kStep)) / (2 * kStep),
+                1e-3 * here.gradient.norm());
+  }
+  const Separation separation(
+      shapes, Vec2(40, 40), 0.5, [] { return false; }, plate);
+  ASSERT_TRUE(separation.separate(poses, 14, 200));
+  EXPECT_EQ(plate.breach_mm(cube.mesh, poses[0]), 0);
+  EXPECT_EQ(plate.breach_mm(angle.mesh, poses[1]), 0);
+}
+
+// A U on its side, open to the right, as deep as the base, and a cube between its legs: it can be
+// drawn out to the right alone, unless a wall is in its way.
+TEST(DisassemblyOnPlates, LeadsOverNoWall) {
+  const auto at = [](const Mesh& mesh, const Vec3& low) {
+    return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
+  };
+  const Mesh u = shapes::extruded(
+      {{0, 0}, {20, 0}, {20, 5}, {5, 5}, {5, 25}, {20, 25}, {20, 30}, {0, 30}, {0, 25}, {0, 5}},
+      {{0, 1, 2, 3, 9}, {9, 3, 4, 8}, {4, 5, 6, 7, 8}}, 10);
+  const std::vector<Mesh> parts{at(u, Vec3(0, 0, 0)),
+                                at(shapes::box(Vec3(8, 9, 8)), Vec3(6, 0.5, 10))};
+  const Vec2 base_mm(45, 10);
+  EXPECT_TRUE(exact_disassembly(parts, base_mm, {}).stuck.empty());
+  const std::vector<int> both{0, 1};
+  const Plate narrow({{0, 0}, {24, 0}, {24, 10}, {0, 10}}, {});
+  EXPECT_EQ(exact_disassembly(parts, base_mm, {}, narrow).stuck, both);
+  const Plate pin({}, {{{22, 4}, {23, 4}, {23, 6}, {22, 6}}});
+  EXPECT_EQ(exact_disassembly(parts, base_mm, {}, pin).stuck, both);
+  const Plate far({}, {{{40, 4}, {41, 4}, {41, 6}, {40, 6}}});
+  EXPECT_TRUE(exact_disassembly(parts, base_mm, {}, far).stuck.empty());
 }
 
 TEST(PackOnPlates, ARoundPlateTakesWhatItsSquareTakesLess) {

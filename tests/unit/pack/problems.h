@@ -36,4 +36,15 @@ inline PackProblem problem_of(std::vector<Mesh> meshes, const Vec3& build_mm) {
   return problem;
 }
 
+// Parts that may stand anywhere, where height alone counts: the free search packs them.
+inline PackProblem low_problem(std::vector<Mesh> meshes, const Vec3& build_mm, double gap_mm) {
+  PackProblem problem = problem_of(std::move(meshes), build_mm);
+  problem.gap_mm = gap_mm;
+  problem.anywhere = true;
+  problem.tabu_patience = 1;
+  problem.cost.evaluate = [](const TrayMeasure& tray) { return tray.size_mm.z(); };
+  problem.cost.lower_bound = problem.cost.evaluate;
+  return problem;
+}
+
 }  // namespace packmerger::shapes
