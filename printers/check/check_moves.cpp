@@ -10,6 +10,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kToleranceMm = 0.01;  // programs carry three digits
+constexpr double kBetweenLooksMm = 2;
 constexpr const char* kAxes = "XYZ";
 
 std::optional<std::string> judge(const Box3& volume, int axis, double mm) {
@@ -21,13 +22,31 @@ std::optional<std::string> judge(const Box3& volume, int axis, double mm) {
                      kAxes[axis], mm, beyond, low, high);
 }
 
+// Arcs are judged by their chords' ends: what fills a part is far finer than a wall.
+std::optional<std::string> judge(const Plate& plate, const GcodeStep& step) {
+  if (!step.to[0] || !step.to[1]) return std::nullopt;
+  const Vec2 to(*step.to[0], *step.to[1]);
+  const Vec2 from(step.from[0].value_or(to.x()), step.from[1].value_or(to.y()));
+  const int steps = 1 + static_cast<int>((to - from).norm() / kBetweenLooksMm);
+  for (int i = 0; i <= steps; ++i) {
+    const Vec2 at = from + (to - from) * i / steps;
+    const double beyond = -plate.nearest_wall(at).clearance_mm;
+    if (beyond > kToleranceMm)
+      return fmt::format(
+          "extrudes at X {:.2f} Y {:.2f}, {:.2f} mm beyond the edge of the plate or over a "
+          "kept-out area",
+          at.x(), at.y(), beyond);
+  }
+  return std::nullopt;
+}
+
 bool moves_and_extrudes(const GcodeStep& step) {
   return step.filament_mm > 0 && (step.named[0] || step.named[1] || step.named[2] || step.arc);
 }
 
 // What is wrong with the step, or nothing. motion: after it.
 std::optional<std::string> fault_of(const GcodeStep& step, const GcodeMotion& motion,
-                                    const Box3& volume) {
+                                    const Box3& volume, const Plate& plate) {
   if (step.doubt) return step.doubt;
   if (!step.moves) return std::nullopt;
   if (moves_and_extrudes(step))
@@ -38,6 +57,8 @@ std::optional<std::string> fault_of(const GcodeStep& step, const GcodeMotion& mo
   for (int axis = 0; axis < 3; ++axis)
     if (step.named[axis] && step.to[axis])
       if (auto fault = judge(volume, axis, *step.to[axis])) return fault;
+  if (!plate.is_whole() && moves_and_extrudes(step))
+    if (auto fault = judge(plate, step)) return fault;
   if (!step.arc) return std::nullopt;
   const Eigen::AlignedBox2d extent = step.arc->extent();
   for (int axis = 0; axis < 2; ++axis)
@@ -55,12 +76,17 @@ Box3 machine_volume(const Profile& profile) {
   return {corner, corner + build};
 }
 
-std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume, GcodeRules rules) {
+Plate machine_plate(const Profile& profile) {
+  return profile.plate().drawn_in(-machine_volume(profile).min().head<2>(), 0);
+}
+
+std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume, GcodeRules rules,
+                                     const Plate& plate) {
   GcodeMotion motion(rules);
   std::optional<MoveFault> fault;
   for_each_line(gcode, [&](std::string_view text, int number) {
     const GcodeStep step = motion.follow(GcodeLine(text, rules));
-    if (const auto what = fault_of(step, motion, volume))
+    if (const auto what = fault_of(step, motion, volume, plate))
       fault = MoveFault{number, std::string(text), *what};
     return !fault;
   });

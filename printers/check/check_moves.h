@@ -22,6 +22,9 @@ struct MoveFault {
 // The volume that may be printed in, in the machine's own coordinates.
 Box3 machine_volume(const Profile& profile);
 
+// The plate in the machine's own coordinates.
+Plate machine_plate(const Profile& profile);
+
 // Whose reading counts for this profile's programs.
 GcodeRules gcode_rules(const Profile& profile);
 
@@ -31,6 +34,9 @@ GcodeRules gcode_rules(const Profile& profile);
 // recalled or set pass as long as nothing is extruded. G92 on a known axis shifts the coordinates
 // and moves nothing. A command that cannot be followed is a fault (gcode/known_codes.h): what is
 // unknown is not judged.
-std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume, GcodeRules rules);
+// Where the plate has walls, moves that extrude stay off them, by the ends of lines and at steps of
+// some millimetres between; travel passes over them.
+std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume, GcodeRules rules,
+                                     const Plate& plate = {});
 
 }  // namespace packmerger

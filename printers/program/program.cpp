@@ -19,7 +19,7 @@ void check_s3g_start(const Profile& profile) {
 
 void check_volume(const Profile& profile, std::string_view gcode) {
   const std::optional<MoveFault> fault =
-      check_moves(gcode, machine_volume(profile), gcode_rules(profile));
+      check_moves(gcode, machine_volume(profile), gcode_rules(profile), machine_plate(profile));
   if (!fault) return;
   throw Error(
       Fault::kBadProfile,

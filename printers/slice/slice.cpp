@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -137,12 +138,26 @@ void run_slicer(const fs::path& folder, const Progress& progress) {
 
 }  // namespace
 
+namespace {
+
+double room_to_walls_mm(const Plate& plate, const Tray& tray) {
+  double room_mm = std::numeric_limits<double>::infinity();
+  if (plate.is_whole()) return room_mm;
+  for (const Mesh& part : tray.parts)
+    for (const Vec3& point : part.points())
+      room_mm = std::min(room_mm, plate.nearest_wall(point.head<2>()).clearance_mm);
+  return std::max(0.0, room_mm);
+}
+
+}  // namespace
+
 SlicedTray slice(const Profile& profile, const Tray& tray, SliceFlavour flavour,
                  const Progress& progress) {
   const Box3 box = contents_box(tray);
   check_contents(profile, box);
   const Vec3 far_room = profile.build() - box.max();
-  const double room_mm = std::min(box.min().head<2>().minCoeff(), far_room.head<2>().minCoeff());
+  const double room_mm = std::min({box.min().head<2>().minCoeff(), far_room.head<2>().minCoeff(),
+                                   room_to_walls_mm(profile.plate(), tray)});
   const SlicerConfig config = slicer_config(profile, flavour, room_mm);
 
   const TemporaryFolder folder;

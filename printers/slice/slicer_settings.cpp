@@ -74,6 +74,13 @@ std::string bed_shape(const Profile& profile) {
   const Box3 volume = machine_volume(profile);
   const Vec3& a = volume.min();
   const Vec3& b = volume.max();
+  if (!profile.plate_mm.empty()) {
+    std::string corners;
+    for (const Vec2& at : profile.plate_mm)
+      corners +=
+          fmt::format("{}{:g}x{:g}", corners.empty() ? "" : ",", a.x() + at.x(), a.y() + at.y());
+    return corners;
+  }
   return fmt::format("{:g}x{:g},{:g}x{:g},{:g}x{:g},{:g}x{:g}", a.x(), a.y(), b.x(), a.y(), b.x(),
                      b.y(), a.x(), b.y());
 }

@@ -69,8 +69,8 @@ void take_material(ReadyProgram& program, const SlicerComments& told, std::strin
 }
 
 void judge_moves(ReadyProgram& program, std::string_view gcode) {
-  const auto fault =
-      check_moves(gcode, machine_volume(program.profile), gcode_rules(program.profile));
+  const auto fault = check_moves(gcode, machine_volume(program.profile),
+                                 gcode_rules(program.profile), machine_plate(program.profile));
   if (!fault) return;
   program.warnings.push_back(
       {"moves_not_judged", fmt::format("Line {} of the program, \"{}\", {}", fault->line,

@@ -43,7 +43,9 @@ Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std:
 }
 
 BuildVolume build_volume(const Profile& profile) {
-  return {room_of(profile).size_mm, radians(profile.pack.rotation_step_deg)};
+  const Room room = room_of(profile);
+  return {room.size_mm, radians(profile.pack.rotation_step_deg),
+          room.plate.drawn_in(room.corner_mm.head<2>(), 0)};
 }
 
 Divided keep_whole(const Mesh& surface) {

@@ -84,17 +84,30 @@ Arrangement arrange(const Models& models, const PackProblem& problem, const Pack
   return arrangement;
 }
 
-// Sliced trays stand in the middle of the plate, where no clip, edge or priming line is in the way.
-// What is handed over is moved by the maker's program as it likes.
-void centre(Arrangement& arrangement, const Profile& profile) {
+// Sliced trays stand in the middle of the plate, where no clip, edge or priming line is in the way,
+// or as far towards it as the plate's walls let them. What is handed over is moved by the maker's
+// program as it likes.
+void centre(Arrangement& arrangement, const Profile& profile, const Plate& plate) {
   if (!profile.is_sliced()) return;
   std::vector<Box3> contents(arrangement.trays);
   for (const JobPart& part : arrangement.parts)
     contents[part.tray - 1].extend(bounding_box(transformed(part.surface, part.pose)));
-  for (JobPart& part : arrangement.parts) {
-    Vec3 shift = profile.build() / 2 - contents[part.tray - 1].center();
-    shift.z() = 0;
-    part.pose.pretranslate(shift);
+  for (int tray = 1; tray <= arrangement.trays; ++tray) {
+    Vec3 to_middle = profile.build() / 2 - contents[tray - 1].center();
+    to_middle.z() = 0;
+    const auto all_clear = [&](const Vec3& shift) {
+      return std::all_of(
+          arrangement.parts.begin(), arrangement.parts.end(), [&](const JobPart& part) {
+            return part.tray != tray ||
+                   plate.breach_mm(part.surface, Eigen::Translation3d(shift) * part.pose) <=
+                       kWallTolerance_mm;
+          });
+    };
+    Vec3 shift = Vec3::Zero();
+    for (const double share : {1.0, 0.75, 0.5, 0.25})
+      if (shift.isZero() && all_clear(share * to_middle)) shift = share * to_middle;
+    for (JobPart& part : arrangement.parts)
+      if (part.tray == tray) part.pose.pretranslate(shift);
   }
 }
 
@@ -136,7 +149,9 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
       problem.enclosures.push_back(std::move(round_it));
     }
   }
-  problem.build_mm = room_of(profile).size_mm;
+  const Room room = room_of(profile);
+  problem.build_mm = room.size_mm;
+  problem.plate = room.plate.drawn_in(room.corner_mm.head<2>(), 0);
   problem.gap_mm = std::max(profile.pack.gap_mm, kLeastGap_mm);
   problem.grid_mm = profile.pack.grid_mm;
   problem.rotation_step = radians(profile.pack.rotation_step_deg);
@@ -156,16 +171,18 @@ PackProblem packing_problem(const Models& models, const Profile& profile, std::u
 Arrangement pack_models(const Models& models, const Profile& profile, std::uint64_t seed,
                         double budget_s, const Progress& progress) {
   PackProblem problem = packing_problem(models, profile, seed, budget_s);
+  const Room room = room_of(profile);
   std::optional<BrokenPromise> broken;
   for (int attempt = 0; attempt < 3; ++attempt) {
     const Packing packing = pack(problem, progress);
-    Arrangement arrangement = arrange(models, problem, packing, room_of(profile), progress);
+    Arrangement arrangement = arrange(models, problem, packing, room, progress);
     lift_above_plate(arrangement);
-    centre(arrangement, profile);
-    broken = broken_promise(arrangement, profile.pack.gap_mm, room_of(profile), progress);
+    centre(arrangement, profile, room.plate);
+    broken = broken_promise(arrangement, profile.pack.gap_mm, room, progress);
     if (!broken) return arrangement;
     problem.gap_mm += broken->missing_mm + 0.05;
     problem.build_mm -= Vec3::Constant(broken->missing_mm);
+    problem.plate = problem.plate.drawn_in(Vec2(0, 0), broken->missing_mm);
   }
   throw Error(Fault::kInternal, broken->what + ", and another layout did not help",
               "Try another --seed, or a finer --set grid_mm, and report this model.");

@@ -63,6 +63,10 @@ std::optional<BrokenPromise> broken_on(const WrittenTray& tray, double gap_mm, c
   if (outside > kRounding_mm)
     return BrokenPromise{fmt::format("A part stands {:.4f} mm out of the build volume", outside),
                          outside};
+  for (const Mesh& part : tray.parts)
+    if (const double over = room.plate.breach_mm(part, Pose::Identity()); over > kRounding_mm)
+      return BrokenPromise{fmt::format("A part stands {:.4f} mm over a wall of the plate", over),
+                           over};
   const double least = std::max(gap_mm - kRounding_mm, kRounding_mm);
   const double gap = least_gap_mm(tray.parts, gap_mm + 2 * kRounding_mm);
   if (gap < kRounding_mm)

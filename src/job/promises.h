@@ -16,7 +16,8 @@ struct BrokenPromise {
 };
 
 // Looks at every tray's parts as they are written, rounded to 32-bit floats: all at least gap_mm
-// apart, and never touching or within one another even at a gap of 0; all within `room`; and each
+// apart, and never touching or within one another even at a gap of 0; all within `room` and over no
+// wall of its plate; and each
 // taken out in removal_order along its path, if it has one, and then straight up without meeting
 // another. Rounding may take 0.0001 mm of a distance. Nothing where all of it holds.
 std::optional<BrokenPromise> broken_promise(const Arrangement& arrangement, double gap_mm,

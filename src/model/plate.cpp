@@ -194,6 +194,28 @@ bool Plate::surely_clear(const Box3& box) const {
                       [&](const Eigen::AlignedBox2d& barred) { return barred.intersects(flat); });
 }
 
+// Where the box touches walls on two sides, seen as boxes, within the range of shifts.
+std::vector<Vec2> Plate::touching(const Eigen::AlignedBox2d& box,
+                                  const Eigen::AlignedBox2d& range) const {
+  std::array<std::vector<double>, 2> along;
+  for (int axis = 0; axis < 2; ++axis) {
+    std::vector<double>& shifts = along[static_cast<std::size_t>(axis)];
+    shifts = {range.min()[axis], range.max()[axis]};
+    for (const Eigen::AlignedBox2d& barred : boxes_) {
+      shifts.push_back(barred.max()[axis] - box.min()[axis]);
+      shifts.push_back(barred.min()[axis] - box.max()[axis]);
+    }
+    std::erase_if(shifts, [&](double shift) {
+      return shift < range.min()[axis] || shift > range.max()[axis];
+    });
+    std::sort(shifts.begin(), shifts.end());
+  }
+  std::vector<Vec2> found;
+  for (const double y : along[1])
+    for (const double x : along[0]) found.emplace_back(x, y);
+  return found;
+}
+
 std::optional<Vec2> Plate::spot_for(const TriangleView& surface, const Vec2& room_mm) const {
   constexpr int kLattice = 15;
   std::vector<Vec2> points;
@@ -215,21 +237,26 @@ std::optional<Vec2> Plate::spot_for(const TriangleView& surface, const Vec2& roo
   Vec2 middle = Vec2::Zero();
   for (const Vec2& shift : shifts) middle += shift / static_cast<double>(shifts.size());
   if (barred_.empty()) return middle;
-  std::vector<Vec2> tried;
+  std::vector<Vec2> coarse;
   const Eigen::AlignedBox2d range = bounding_box(shifts);
   for (int y = 0; y < kLattice; ++y)
     for (int x = 0; x < kLattice; ++x) {
       const Vec2 at = range.min() + range.sizes().cwiseProduct(Vec2(x, y)) / (kLattice - 1);
-      if (contains(shifts, at)) tried.push_back(at);
+      if (contains(shifts, at)) coarse.push_back(at);
     }
-  tried.insert(tried.end(), shifts.begin(), shifts.end());
-  tried.push_back(middle);
-  // The hull is looked at first: where it stands clear the surface does, and it is far smaller.
-  const TriangleSoup of_hull = fan(hull);
-  for (const TriangleView& looked_at : {TriangleView(of_hull), surface})
+  coarse.insert(coarse.end(), shifts.begin(), shifts.end());
+  coarse.push_back(middle);
+  const auto first_clear = [&](const TriangleView& looked_at,
+                               const std::vector<Vec2>& tried) -> std::optional<Vec2> {
     for (const Vec2& shift : tried)
       if (breach_mm(looked_at, shifted_by(shift)) <= kWallTolerance_mm) return shift;
-  return std::nullopt;
+    return std::nullopt;
+  };
+  // The hull is looked at first: where it stands clear the surface does, and it is far smaller.
+  const TriangleSoup of_hull = fan(hull);
+  if (const auto spot = first_clear(TriangleView(of_hull), coarse)) return spot;
+  if (const auto spot = first_clear(TriangleView(of_hull), touching(box, range))) return spot;
+  return first_clear(surface, coarse);
 }
 
 }  // namespace packmerger

@@ -59,11 +59,14 @@ class Plate {
 
   // A shift in x and y that puts a surface within the rectangle from 0 to room_mm, clear of all
   // walls: the middle of what is free within the hull where nothing else is barred, and otherwise
-  // the first on a lattice, from the front and the left. The same for the same surface. Empty where
-  // none was found.
+  // the first on a lattice, from the front and the left, or where its convex hull touches
+  // walls on two sides. The same for the same surface. Empty where none was found.
   std::optional<Vec2> spot_for(const TriangleView& surface, const Vec2& room_mm) const;
 
  private:
+  std::vector<Vec2> touching(const Eigen::AlignedBox2d& box,
+                             const Eigen::AlignedBox2d& range) const;
+
   Polygon hull_;
   std::vector<Side> sides_;
   std::vector<Polygon> barred_;

@@ -12,6 +12,7 @@
 
 #include "base/geometry.h"
 #include "model/dialect.h"
+#include "model/plate.h"
 
 namespace packmerger {
 
@@ -135,6 +136,9 @@ struct Profile {
   Dialect dialect = Dialect::kHandoff;
   HandoffDocument document = HandoffDocument::kTrayStl;
   std::array<double, 3> build_mm{};  // x, y, z of the volume that may be printed in
+  // In the tray's coordinates: from the build volume's front left corner.
+  Polygon plate_mm;                  // where parts may stand; empty: the whole rectangle
+  std::vector<Polygon> keep_out_mm;  // where no part may, at any height
   Origin origin = Origin::kFrontLeft;
   double layer_mm = 0;
   double support_angle_deg = 0;  // 0..90 below the horizontal
@@ -151,6 +155,7 @@ struct Profile {
   const ProgramLanguage* language() const { return row_of(dialect).language; }
   bool is_sliced() const { return language() != nullptr; }
   Vec3 build() const { return {build_mm[0], build_mm[1], build_mm[2]}; }
+  Plate plate() const { return {plate_mm, keep_out_mm}; }
 };
 
 // The folders profiles are looked for in, best first: $PACKMERGER_PROFILES,
@@ -179,11 +184,11 @@ std::string profile_toml(const Profile& profile);
 
 // One key as docs/PROFILES shows it.
 struct ProfileKey {
-  std::string name;  // "gap_mm", "polyjet.swath_s"
-  std::string
-      type;  // "number", "integer", "text", "one of …", "3 numbers", "table of texts", "texts"
-  std::string unit;           // may be empty
-  std::string range;          // may be empty
+  std::string name;   // "gap_mm", "polyjet.swath_s"
+  std::string type;   // "number", "integer", "text", "one of …", "3 numbers", "points", "lists of
+                      // points", "table of texts", "texts"
+  std::string unit;   // may be empty
+  std::string range;  // may be empty
   std::string meaning;        // one sentence
   std::string default_value;  // as TOML; "required" where a profile must say it
 };

@@ -15,12 +15,26 @@ using Json = nlohmann::json;
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+Json points_json(const Polygon& polygon) {
+  Json points = Json::array();
+  for (const Vec2& at : polygon) points.push_back({at.x(), at.y()});
+  return points;
+}
+
+Json areas_json(const std::vector<Polygon>& areas) {
+  Json json = Json::array();
+  for (const Polygon& area : areas) json.push_back(points_json(area));
+  return json;
+}
+
 struct SettingJson {
   Json operator()(const NumberKey& key) const { return *key.value; }
   Json operator()(const IntegerKey& key) const { return *key.value; }
   Json operator()(const TextKey& key) const { return *key.value; }
   Json operator()(const ChoiceKey& key) const { return key.names[key.get()]; }
   Json operator()(const Numbers3Key& key) const { return *key.value; }
+  Json operator()(const PolygonKey& key) const { return points_json(*key.value); }
+  Json operator()(const PolygonsKey& key) const { return areas_json(*key.value); }
   Json operator()(const TextsKey& key) const { return *key.value; }
   Json operator()(const TextTableKey& key) const { return *key.value; }
 };
@@ -91,6 +105,8 @@ Json printer_json(const Profile& profile) {
           {"technology", settings["technology"]},
           {"dialect", settings["dialect"]},
           {"build_mm", profile.build_mm},
+          {"plate_mm", points_json(profile.plate_mm)},
+          {"keep_out_mm", areas_json(profile.keep_out_mm)},
           {"support_angle_deg", profile.support_angle_deg}};
 }
 

@@ -10,7 +10,8 @@
 
 namespace packmerger {
 
-// {"name", "technology", "dialect", "build_mm", "support_angle_deg"}.
+// {"name", "technology", "dialect", "build_mm", "plate_mm", "keep_out_mm",
+// "support_angle_deg"}.
 nlohmann::json printer_json(const Profile& profile);
 
 // The whole report. Number arrays and keys are those of docs/JOB_FOLDER. Bytes that are not UTF-8

@@ -25,7 +25,7 @@ Assembly assembly_of(const Arrangement& arrangement) {
 Room room_of(const Profile& profile) {
   const double margin = slicer_margin_mm(profile);
   const Vec3 corner(margin, margin, 0);
-  return {corner, profile.build() - 2 * corner};
+  return {corner, profile.build() - 2 * corner, profile.plate().drawn_in(Vec2(0, 0), margin)};
 }
 
 TrayMeasure measure(const Tray& tray, const Profile& profile) {

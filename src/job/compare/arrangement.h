@@ -31,6 +31,7 @@ Assembly assembly_of(const Arrangement& arrangement);
 struct Room {
   Vec3 corner_mm = Vec3::Zero();
   Vec3 size_mm = Vec3::Zero();
+  Plate plate{};  // its walls drawn in by the margin, in the build volume's coordinates
 };
 Room room_of(const Profile& profile);
 

@@ -56,12 +56,61 @@ Pose standing_at(const Mat3& way, const Box3& box, const Vec2& corner) {
   return pose;
 }
 
+// Whether the model, turned, has a place in the room.
+bool fits(const Mesh& model, const Mat3& way, const Room& room) {
+  if (!fits(turned_box(model, way).sizes(), room.size_mm)) return false;
+  if (room.plate.is_whole()) return true;
+  const Plate plate = room.plate.drawn_in(room.corner_mm.head<2>(), 0);
+  return plate.spot_for(transformed(model, Pose(way)), room.size_mm.head<2>()).has_value();
+}
+
+Room whole_room(const Profile& profile) { return {Vec3::Zero(), profile.build(), profile.plate()}; }
+
 // The margin for support is given up where a model fills the build volume.
-Room room_for(const std::vector<Box3>& boxes, const Profile& profile) {
+Room room_for(const WholeModels& models, const std::vector<Mat3>& ways, const Profile& profile) {
   const Room room = room_of(profile);
-  const bool fit = std::all_of(boxes.begin(), boxes.end(),
-                               [&](const Box3& box) { return fits(box.sizes(), room.size_mm); });
-  return fit ? room : Room{Vec3::Zero(), profile.build()};
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (!fits(*models[m], ways[m], room)) return whole_room(profile);
+  return room;
+}
+
+bool over_a_wall(const Arrangement& arrangement, const Room& room) {
+  return std::any_of(arrangement.parts.begin(), arrangement.parts.end(), [&](const JobPart& part) {
+    return room.plate.breach_mm(part.surface, part.pose) > kWallTolerance_mm;
+  });
+}
+
+// Each part on the first tray where it has a place off the plate's walls and the boxes of those
+// before it, the deepest first.
+void place_between_walls(Arrangement& arrangement, const Room& room, double gap_mm) {
+  const Vec2 corner = room.corner_mm.head<2>();
+  const Plate walls = room.plate.drawn_in(corner, 0);
+  std::vector<std::vector<Polygon>> barred;  // of each tray
+  std::vector<JobPart*> order;
+  for (JobPart& part : arrangement.parts) order.push_back(&part);
+  const auto depth = [](const JobPart* part) {
+    return bounding_box(transformed(part->surface, part->pose)).sizes().y();
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const JobPart* a, const JobPart* b) { return depth(a) > depth(b); });
+  for (JobPart* part : order) {
+    const Mesh standing = transformed(part->surface, part->pose);
+    std::optional<Vec2> spot;
+    for (std::size_t tray = 0; !spot; ++tray) {
+      if (tray == barred.size()) barred.push_back(walls.barred());
+      const bool is_bare = barred[tray].size() == walls.barred().size();
+      spot = Plate(walls.hull(), barred[tray]).spot_for(standing, room.size_mm.head<2>());
+      if (!spot && is_bare) return;  // it has no place anywhere; the check of promises tells
+      part->tray = static_cast<int>(tray) + 1;
+    }
+    const Box3 box = bounding_box(standing);
+    const Vec2 low = box.min().head<2>() + *spot - Vec2::Constant(gap_mm);
+    const Vec2 high = box.max().head<2>() + *spot + Vec2::Constant(gap_mm);
+    barred[static_cast<std::size_t>(part->tray) - 1].push_back(
+        {low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())});
+    part->pose.pretranslate(Vec3(spot->x() + corner.x(), spot->y() + corner.y(), 0));
+  }
+  arrangement.trays = static_cast<int>(barred.size());
 }
 
 Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
@@ -72,9 +121,9 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     boxes.push_back(turned_box(*models[m], ways[m]));
     sizes.push_back(boxes.back().sizes().head<2>());
   }
-  const Room room = room_for(boxes, profile);
-  const std::vector<Slot> slots =
-      side_by_side(sizes, room.size_mm.head<2>(), std::max(profile.pack.gap_mm, kLeastGap_mm));
+  const Room room = room_for(models, ways, profile);
+  const double gap_mm = std::max(profile.pack.gap_mm, kLeastGap_mm);
+  const std::vector<Slot> slots = side_by_side(sizes, room.size_mm.head<2>(), gap_mm);
   Arrangement arrangement;
   for (std::size_t m = 0; m < models.size(); ++m) {
     JobPart part;
@@ -88,6 +137,7 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     arrangement.removal_order.push_back(part.id);
     arrangement.parts.push_back(std::move(part));
   }
+  if (over_a_wall(arrangement, room)) place_between_walls(arrangement, room, gap_mm);
   return arrangement;
 }
 
@@ -114,9 +164,9 @@ std::optional<Mat3> best_way(const Mesh& model, const Profile& profile, const Pr
   std::vector<Rank> ranks(2 * ways.size(), {true, std::numeric_limits<double>::infinity(), 0, 0});
   parallel_tasks(ways.size(), [&](std::size_t i) {
     const Box3 box = turned_box(model, ways[i]);
-    const Vec3 size = box.sizes();
-    const bool fits_straight = fits(size, profile.build());
-    const bool fits_turned = fits(Vec3(size.y(), size.x(), size.z()), profile.build());
+    const Room room = whole_room(profile);
+    const bool fits_straight = fits(model, ways[i], room);
+    const bool fits_turned = fits(model, quarter_turned(ways[i]), room);
     if (!fits_straight && !fits_turned) return;
     Tray tray;
     tray.parts.push_back(transformed(model, standing_at(ways[i], box, Vec2::Zero())));
@@ -170,7 +220,7 @@ std::vector<Slot> side_by_side(const std::vector<Vec2>& sizes, const Vec2& tray_
 
 std::optional<Arrangement> stand_as_is(const WholeModels& models, const Profile& profile) {
   for (const auto& model : models)
-    if (!fits(bounding_box(*model).sizes(), profile.build())) return std::nullopt;
+    if (!fits(*model, Mat3::Identity(), whole_room(profile))) return std::nullopt;
   return arrange(models, std::vector<Mat3>(models.size(), Mat3::Identity()), profile);
 }
 

@@ -127,7 +127,10 @@ Vec2 nearest_on_border(const Polygon& polygon, const Vec2& at) {
   return nearest;
 }
 
-double depth_within(const Polygon& polygon, const Vec2& a, const Vec2& b) {
+namespace {
+
+// Where the stretch from a to b meets the border, as shares of it, its ends among them.
+std::vector<double> cuts_of(const Polygon& polygon, const Vec2& a, const Vec2& b) {
   std::vector<double> cuts{0, 1};
   const Vec2 along = b - a;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -140,9 +143,25 @@ double depth_within(const Polygon& polygon, const Vec2& a, const Vec2& b) {
     if (at > 0 && at < 1 && on_side >= -kSame_mm && on_side <= 1 + kSame_mm) cuts.push_back(at);
   }
   std::sort(cuts.begin(), cuts.end());
+  return cuts;
+}
+
+}  // namespace
+
+std::vector<Stretch> pieces_within(const Polygon& polygon, const Vec2& a, const Vec2& b) {
+  const std::vector<double> cuts = cuts_of(polygon, a, b);
+  std::vector<Stretch> pieces;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+    if (contains(polygon, a + (cuts[i] + cuts[i + 1]) / 2 * (b - a)))
+      pieces.push_back({a + cuts[i] * (b - a), a + cuts[i + 1] * (b - a)});
+  return pieces;
+}
+
+double depth_within(const Polygon& polygon, const Vec2& a, const Vec2& b) {
+  const std::vector<double> cuts = cuts_of(polygon, a, b);
   double deepest = 0;
   const auto look = [&](double at) {
-    const Vec2 point = a + at * along;
+    const Vec2 point = a + at * (b - a);
     if (contains(polygon, point))
       deepest = std::max(deepest, (nearest_on_border(polygon, point) - point).norm());
   };

@@ -1,6 +1,7 @@
 // Simple polygons in the plane of the plate, mm.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -30,6 +31,10 @@ bool contains(const Polygon& polygon, const Vec2& at);
 
 // The point of the border that is nearest.
 Vec2 nearest_on_border(const Polygon& polygon, const Vec2& at);
+
+// What of the stretch from a to b lies within the polygon, in order; on the border either.
+using Stretch = std::array<Vec2, 2>;
+std::vector<Stretch> pieces_within(const Polygon& polygon, const Vec2& a, const Vec2& b);
 
 // How deep the stretch from a to b lies within the polygon where it does so deepest, sought in the
 // middle of every piece of it that lies within; 0 where it stays outside or touches only.

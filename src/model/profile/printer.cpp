@@ -103,10 +103,10 @@ Profile read_profile_file(const fs::path& path) {
   return profile;
 }
 
-std::vector<std::string> split(std::string_view list) {
+std::vector<std::string> split(std::string_view list, char at = ',') {
   std::vector<std::string> items;
   while (!list.empty()) {
-    const std::size_t comma = std::min(list.find(','), list.size());
+    const std::size_t comma = std::min(list.find(at), list.size());
     items.emplace_back(list.substr(0, comma));
     list.remove_prefix(std::min(comma + 1, list.size()));
   }
@@ -121,6 +121,20 @@ std::optional<Number> number_from(std::string_view text) {
   return value;
 }
 
+// "0x0,200x0,200x200": as slicers write their plates.
+std::optional<Polygon> points_from(std::string_view text) {
+  Polygon polygon;
+  for (const std::string& point : split(text)) {
+    const std::size_t cross = point.find('x');
+    if (cross == std::string::npos) return std::nullopt;
+    const auto x = number_from<double>(std::string_view(point).substr(0, cross));
+    const auto y = number_from<double>(std::string_view(point).substr(cross + 1));
+    if (!x || !y) return std::nullopt;
+    polygon.emplace_back(*x, *y);
+  }
+  return polygon;
+}
+
 // What the text of a --set is for this kind of key; empty when it is nothing of the kind.
 struct RawFromText {
   std::string_view text;
@@ -131,6 +145,20 @@ struct RawFromText {
   }
   std::optional<RawValue> operator()(const TextKey&) const { return std::string(text); }
   std::optional<RawValue> operator()(const ChoiceKey&) const { return std::string(text); }
+  std::optional<RawValue> operator()(const PolygonKey&) const {
+    if (text.empty()) return std::vector<std::string>{};
+    const std::optional<Polygon> points = points_from(text);
+    return points ? std::optional<RawValue>(*points) : std::nullopt;
+  }
+  std::optional<RawValue> operator()(const PolygonsKey&) const {
+    std::vector<Polygon> polygons;
+    for (const std::string& one : split(text, ';')) {
+      const std::optional<Polygon> points = points_from(one);
+      if (!points) return std::nullopt;
+      polygons.push_back(*points);
+    }
+    return polygons;
+  }
   std::optional<RawValue> operator()(const TextsKey&) const { return split(text); }
   std::optional<RawValue> operator()(const TextTableKey&) const { return std::nullopt; }
   std::optional<RawValue> operator()(const Numbers3Key&) const {

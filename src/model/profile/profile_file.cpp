@@ -19,7 +19,34 @@ int line_of(const toml::node& node) {
   return std::max(1, static_cast<int>(node.source().begin.line));
 }
 
+std::optional<Polygon> points_of(const toml::array& array) {
+  Polygon polygon;
+  for (const toml::node& item : array) {
+    const toml::array* pair = item.as_array();
+    if (pair == nullptr || pair->size() != 2) return std::nullopt;
+    const auto x = (*pair)[0].value<double>();
+    const auto y = (*pair)[1].value<double>();
+    if (!(*pair)[0].is_number() || !(*pair)[1].is_number() || !x || !y) return std::nullopt;
+    polygon.emplace_back(*x, *y);
+  }
+  return polygon;
+}
+
+// [x, y] of corners, or lists of them.
+std::optional<RawValue> raw_arrays(const toml::array& array) {
+  if (const auto points = points_of(array)) return *points;
+  std::vector<Polygon> polygons;
+  for (const toml::node& item : array) {
+    const toml::array* corners = item.as_array();
+    const auto points = corners == nullptr ? std::nullopt : points_of(*corners);
+    if (!points) return std::nullopt;
+    polygons.push_back(*points);
+  }
+  return polygons;
+}
+
 std::optional<RawValue> raw_array(const toml::array& array) {
+  if (!array.empty() && array.front().is_array()) return raw_arrays(array);
   std::vector<double> numbers;
   std::vector<std::string> texts;
   for (const toml::node& item : array) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "model/profile/plate_keys.h"
+
 namespace packmerger {
 namespace {
 
@@ -109,6 +111,12 @@ void add_machine(Profile& p, std::vector<Key>& keys) {
         "The document that dialects handoff and usb deliver: tray.stl or tray.3mf."},
        {"build_mm", Numbers3Key{&p.build_mm, above(0, 2000)}, "mm",
         "The volume that may be printed in: x, y, z.", true},
+       {"plate_mm", PolygonKey{&p.plate_mm}, "mm",
+        "Where on the tray parts may stand, as the corners of a polygon, counted from the front "
+        "left corner of build_mm; none: the whole rectangle."},
+       {"keep_out_mm", PolygonsKey{&p.keep_out_mm}, "mm",
+        "Areas that no part may stand over at any height, each the corners of a polygon, counted "
+        "in the same way."},
        {"origin", choice(p.origin, {"front_left", "center"}), "",
         "Where on the plate the machine's own coordinates are zero."},
        {"layer_mm", NumberKey{&p.layer_mm, above(0, 2)}, "mm", "The height of a layer.", true},
@@ -325,6 +333,7 @@ std::vector<Key> keys_of(Profile& profile) {
 }
 
 std::string missing_for_abilities(const Profile& profile) {
+  if (const std::string wrong = wrong_with_plate(profile); !wrong.empty()) return wrong;
   if (profile.technology == Technology::kPolyjet && profile.polyjet.layer_s <= 0)
     return "polyjet.layer_s must be above 0 where technology is \"polyjet\"";
   if (profile.technology == Technology::kFdm && profile.fdm.time == FdmTime::kDeposition &&

@@ -49,6 +49,12 @@ struct Numbers3Key {
   std::array<double, 3>* value;
   Limits limits;
 };
+struct PolygonKey {
+  Polygon* value;
+};
+struct PolygonsKey {
+  std::vector<Polygon>* value;
+};
 struct TextsKey {
   std::vector<std::string>* value;
   TextForm form;
@@ -60,7 +66,9 @@ struct TextTableKey {
 
 struct Key {
   std::string name;  // "gap_mm", "polyjet.swath_s"
-  std::variant<NumberKey, IntegerKey, TextKey, ChoiceKey, Numbers3Key, TextsKey, TextTableKey> kind;
+  std::variant<NumberKey, IntegerKey, TextKey, ChoiceKey, Numbers3Key, PolygonKey, PolygonsKey,
+               TextsKey, TextTableKey>
+      kind;
   std::string unit;     // may be empty
   std::string meaning;  // one sentence
   bool required = false;
@@ -70,8 +78,9 @@ struct Key {
 std::vector<Key> keys_of(Profile& profile);
 
 // A value as it was read, before anyone knows whether the key takes it.
-using RawValue = std::variant<std::int64_t, double, std::string, std::vector<double>,
-                              std::vector<std::string>, std::map<std::string, std::string>>;
+using RawValue =
+    std::variant<std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>,
+                 Polygon, std::vector<Polygon>, std::map<std::string, std::string>>;
 
 // Sets the key when the value has its type and lies in its range; otherwise changes nothing and
 // returns false. A table of texts is added to, entry by entry: so a profile changes its base's.

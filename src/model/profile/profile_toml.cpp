@@ -29,6 +29,13 @@ std::string toml_string(const std::string& text) {
   return out + (lines ? "\"\"\"" : "\"");
 }
 
+std::string toml_points(const Polygon& polygon) {
+  std::string list;
+  for (const Vec2& at : polygon)
+    list += fmt::format("{}[{}, {}]", list.empty() ? "" : ", ", at.x(), at.y());
+  return "[" + list + "]";
+}
+
 struct TomlText {
   std::string operator()(const NumberKey& key) const { return fmt::format("{}", *key.value); }
   std::string operator()(const IntegerKey& key) const { return fmt::format("{}", *key.value); }
@@ -37,6 +44,13 @@ struct TomlText {
   std::string operator()(const Numbers3Key& key) const {
     const auto& [x, y, z] = *key.value;
     return fmt::format("[{}, {}, {}]", x, y, z);
+  }
+  std::string operator()(const PolygonKey& key) const { return toml_points(*key.value); }
+  std::string operator()(const PolygonsKey& key) const {
+    std::string list;
+    for (const Polygon& polygon : *key.value)
+      list += (list.empty() ? "" : ", ") + toml_points(polygon);
+    return "[" + list + "]";
   }
   std::string operator()(const TextsKey& key) const {
     std::string list;

@@ -80,6 +80,39 @@ bool assign_numbers3(const Numbers3Key& key, const RawValue& raw) {
   return true;
 }
 
+bool is_empty_list(const RawValue& raw) {
+  const auto* texts = std::get_if<std::vector<std::string>>(&raw);
+  return texts != nullptr && texts->empty();
+}
+
+bool is_finite(const Polygon& polygon) {
+  return polygon.size() <= kMostCorners &&
+         std::ranges::all_of(polygon, [](const Vec2& at) { return at.allFinite(); });
+}
+
+// What makes a polygon of them depends on other keys too: missing_for_abilities() tells.
+bool assign_polygon(const PolygonKey& key, const RawValue& raw) {
+  if (is_empty_list(raw)) {
+    key.value->clear();
+    return true;
+  }
+  const auto* value = std::get_if<Polygon>(&raw);
+  if (value == nullptr || !is_finite(*value)) return false;
+  *key.value = *value;
+  return true;
+}
+
+bool assign_polygons(const PolygonsKey& key, const RawValue& raw) {
+  if (is_empty_list(raw)) {
+    key.value->clear();
+    return true;
+  }
+  const auto* value = std::get_if<std::vector<Polygon>>(&raw);
+  if (value == nullptr || !std::ranges::all_of(*value, is_finite)) return false;
+  *key.value = *value;
+  return true;
+}
+
 bool assign_texts(const TextsKey& key, const RawValue& raw) {
   const auto* values = std::get_if<std::vector<std::string>>(&raw);
   if (values == nullptr) return false;
@@ -103,6 +136,8 @@ bool assign_table(const TextTableKey& key, const RawValue& raw) {
   return true;
 }
 
+std::string points_range() { return fmt::format("3 to {} corners, [x, y]", kMostCorners); }
+
 }  // namespace
 
 bool assign(const Key& key, const RawValue& raw) {
@@ -111,6 +146,8 @@ bool assign(const Key& key, const RawValue& raw) {
                                [&](const TextKey& kind) { return assign_text(kind, raw); },
                                [&](const ChoiceKey& kind) { return assign_choice(kind, raw); },
                                [&](const Numbers3Key& kind) { return assign_numbers3(kind, raw); },
+                               [&](const PolygonKey& kind) { return assign_polygon(kind, raw); },
+                               [&](const PolygonsKey& kind) { return assign_polygons(kind, raw); },
                                [&](const TextsKey& kind) { return assign_texts(kind, raw); },
                                [&](const TextTableKey& kind) { return assign_table(kind, raw); }},
                     key.kind);
@@ -124,6 +161,8 @@ std::string type_name(const Key& key) {
                                  return "one of " + joined(kind.names);
                                },
                                [](const Numbers3Key&) -> std::string { return "3 numbers"; },
+                               [](const PolygonKey&) -> std::string { return "points"; },
+                               [](const PolygonsKey&) -> std::string { return "lists of points"; },
                                [](const TextsKey&) -> std::string { return "texts"; },
                                [](const TextTableKey&) -> std::string { return "table of texts"; }},
                     key.kind);
@@ -135,6 +174,8 @@ std::string range_text(const Key& key) {
                                [](const TextKey& kind) { return kind.form.words; },
                                [](const ChoiceKey&) { return std::string(); },
                                [](const Numbers3Key& kind) { return "each " + words(kind.limits); },
+                               [](const PolygonKey&) { return points_range(); },
+                               [](const PolygonsKey&) { return "each " + points_range(); },
                                [](const TextsKey& kind) { return "each " + kind.form.words; },
                                [](const TextTableKey& kind) { return "each " + kind.form.words; }},
                     key.kind);

@@ -15,9 +15,37 @@ namespace {
 constexpr double kSameAxis = 1e-6;
 constexpr double kRounding_mm = 1e-6;  // a part exactly as long as the tray fits
 
+// How deep a box may be that is so many mm wide, by whole mm of its width. What fits as a box
+// fits; what only fits round a kept-out area does not count.
+std::vector<double> deepest_boxes(const BuildVolume& build) {
+  constexpr int kHalvings = 9;
+  std::vector<double> deepest_mm;
+  if (build.plate.is_whole()) return deepest_mm;
+  const auto fits = [&](double x, double y) {
+    TriangleSoup box;
+    box.points = {Vec3(0, 0, 0), Vec3(x, 0, 0), Vec3(x, y, 0), Vec3(0, y, 0)};
+    box.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return build.plate.spot_for(box, build.build_mm.head<2>()).has_value();
+  };
+  double most = build.build_mm.y();  // a wider box is never deeper
+  for (int x = 1; x <= static_cast<int>(build.build_mm.x()) && most > 0; ++x) {
+    double low = 0;
+    if (fits(x, most)) low = most;
+    for (int i = 0; low < most && i < kHalvings; ++i) {
+      const double middle = (low + most) / 2;
+      (fits(x, middle) ? low : most) = middle;
+    }
+    deepest_mm.push_back(low);
+    most = low;
+  }
+  deepest_mm.push_back(0);
+  return deepest_mm;
+}
+
 }  // namespace
 
-FitTest::FitTest(const BuildVolume& build) : build_mm_(build.build_mm) {
+FitTest::FitTest(const BuildVolume& build)
+    : build_mm_(build.build_mm), deepest_mm_(deepest_boxes(build)) {
   using std::numbers::pi;
   const int steps =
       build.rotation_step > 0
@@ -92,15 +120,22 @@ bool FitTest::fits(const Extents& a, const Extents& b) const {
   return std::any_of(rotations_.begin(), rotations_.end(), [&](const std::array<int, 3>& r) {
     return length(r[0]) <= build_mm_.x() + kRounding_mm &&
            length(r[1]) <= build_mm_.y() + kRounding_mm &&
-           length(r[2]) <= build_mm_.z() + kRounding_mm;
+           length(r[2]) <= build_mm_.z() + kRounding_mm && has_room(length(r[0]), length(r[1]));
   });
+}
+
+bool FitTest::has_room(double x_mm, double y_mm) const {
+  if (deepest_mm_.empty()) return true;
+  const auto index = static_cast<std::size_t>(std::max(0.0, std::ceil(x_mm - kRounding_mm) - 1));
+  return index < deepest_mm_.size() && y_mm <= deepest_mm_[index];
 }
 
 bool FitTest::fits(const std::vector<Vec3>& points, double margin_mm) const {
   Box3 box;
   for (const Vec3& point : points) box.extend(point);
   if (box.isEmpty()) return false;
-  if (box.diagonal().norm() + margin_mm <= build_mm_.minCoeff()) return true;  // turned any way
+  const double most_mm = box.diagonal().norm() + margin_mm;
+  if (most_mm <= build_mm_.minCoeff() && has_room(most_mm, most_mm)) return true;  // turned any way
   Extents extents = extents_of(points);
   for (double& low : extents.low) low -= margin_mm / 2;
   for (double& high : extents.high) high += margin_mm / 2;

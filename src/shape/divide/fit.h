@@ -35,8 +35,12 @@ class FitTest {
  private:
   Extents extents_of(const std::vector<Vec3>& points) const;
 
+  // Whether a box of this footprint has room between the plate's walls.
+  bool has_room(double x_mm, double y_mm) const;
+
   Vec3 build_mm_;
-  std::vector<Vec3> axes_;                     // without opposites
+  std::vector<double> deepest_mm_;  // by x in whole mm; empty where the plate has no walls
+  std::vector<Vec3> axes_;          // without opposites
   std::vector<std::array<int, 3>> rotations_;  // which axes become x, y and z
 };
 

@@ -13,6 +13,7 @@ namespace packmerger {
 struct BuildVolume {
   Vec3 build_mm = Vec3::Zero();  // the tray's inner size
   double rotation_step = 0;      // radians, about each of the three axes, as the packer turns parts
+  Plate plate{};                 // its walls within build_mm
 };
 
 // First the pair with the smallest cross-section is merged until every cross-section is at least

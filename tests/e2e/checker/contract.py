@@ -26,7 +26,7 @@ JOB = {
         "weight": NUMBER, "wall_mm": NUMBER, "voxel_mm": POSITIVE, "segmentation": TEXT, "clusters": INTEGER,
         "min_glue_area_mm2": NUMBER, "min_volume_fraction": NUMBER, "tabu_memory": INTEGER,
         "tabu_patience": INTEGER},
-    "printer": {"build_mm": (POSITIVE, 3), "support_angle_deg": NUMBER},
+    "printer": {"build_mm": (POSITIVE, 3), "support_angle_deg": NUMBER},  # and plate_mm, keep_out_mm
     "shell": {"volume_mm3": POSITIVE, "wall_mm": NUMBER},
     "segments": {"tetrahedra": INTEGER, "clusters": INTEGER, "after_premerge": INTEGER, "final": INTEGER},
     "packing": {"weight": NUMBER, "cost": NUMBER, "bbox_mm3": POSITIVE, "support_mm3": NUMBER,

@@ -5,6 +5,7 @@ from scipy.sparse.csgraph import connected_components
 
 from . import meshes
 from .tree import Tree
+from .walls import Walls
 
 BUILD_TOLERANCE_MM = 1e-4  # a float of 300 mm is stored to 3e-5
 VOLUME_TOLERANCE = 1e-4    # of the part
@@ -71,6 +72,7 @@ def matter_faults(corners, index):
 
 def check_solids(job, report):
     build = np.array(job.data["printer"]["build_mm"])
+    walls = Walls(job.data["printer"])
     for part in job.readable_parts():
         name, corners = part["file"], job.triangles[part["id"]]
         points, index = meshes.weld(corners)
@@ -88,6 +90,8 @@ def check_solids(job, report):
         low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
         inside = (low >= -BUILD_TOLERANCE_MM).all() and (high <= build + BUILD_TOLERANCE_MM).all()
         report.check(f"{name} is inside build_mm", inside, f"{np.round(low, 3).tolist()} to {np.round(high, 3).tolist()}")
+        fault = walls.fault(corners[:, :, :2])
+        report.check(f"{name} stands on the plate and over no kept-out area", not fault, fault)
         pose = np.array(part["transform"]).reshape(4, 4)
         turn = pose[:3, :3]
         rigid = (np.abs(turn @ turn.T - np.eye(3)).max() < 1e-6 and abs(np.linalg.det(turn) - 1) < 1e-6

@@ -161,5 +161,28 @@ TEST(InnerPoints, LieInside) {
   }
 }
 
+// A slot half a millimetre wider than the box, off every lattice.
+TEST(Plates, FindTheSpotBetweenTwoAreas) {
+  const auto strip = [](double low, double high) {
+    return Polygon{{low, 0}, {high, 0}, {high, 60}, {low, 60}};
+  };
+  const Plate plate({}, {strip(-5, 41.3), strip(51.8, 120)});
+  const Mesh box = closed_mesh(fixtures::cube(10));
+  const auto spot = plate.spot_for(box, Vec2(100, 60));
+  ASSERT_TRUE(spot);
+  EXPECT_LE(plate.breach_mm(box, at(spot->x(), spot->y())), kWallTolerance_mm);
+  EXPECT_FALSE(Plate({}, {strip(-5, 41.3), strip(51.2, 120)}).spot_for(box, Vec2(100, 60)));
+}
+
+TEST(Polygons, CutStretchesIntoThePiecesWithin) {
+  const Polygon u{{0, 0}, {30, 0}, {30, 20}, {20, 20}, {20, 5}, {10, 5}, {10, 20}, {0, 20}};
+  const std::vector<Stretch> pieces = pieces_within(u, Vec2(-5, 10), Vec2(25, 10));
+  ASSERT_EQ(pieces.size(), 2U);
+  EXPECT_TRUE(pieces[0][0].isApprox(Vec2(0, 10)));
+  EXPECT_TRUE(pieces[0][1].isApprox(Vec2(10, 10)));
+  EXPECT_TRUE(pieces[1][0].isApprox(Vec2(20, 10)));
+  EXPECT_TRUE(pieces[1][1].isApprox(Vec2(25, 10)));
+}
+
 }  // namespace
 }  // namespace packmerger

@@ -290,6 +290,41 @@ TEST_F(ProfileTest, SetTakesWhatAProfileTakes) {
 }
 
 // Cuts, swaps and foreign bytes in a real profile: it is read, or refused with file and line.
+TEST_F(ProfileTest, APlateIsASimplePolygonOnTheTray) {
+  Profile profile =
+      read_text(kSmall +
+                "plate_mm = [[50, 0], [100, 50.5], [0, 50]]\n"
+                "keep_out_mm = [[[0, 0], [9, 0], [9, 9]], [[90, 90], [120, 90], [90, 99]]]\n");
+  EXPECT_EQ(profile.plate_mm.size(), 3U);
+  EXPECT_EQ(profile.plate_mm[1], Vec2(100, 50.5));
+  ASSERT_EQ(profile.keep_out_mm.size(), 2U);
+  EXPECT_EQ(profile.keep_out_mm[1][1], Vec2(120, 90));
+  EXPECT_EQ(profile_toml(read_text(profile_toml(profile))), profile_toml(profile));
+
+  set_profile_key(profile, "plate_mm=0x0,100x0,50.5x99");
+  EXPECT_EQ(profile.plate_mm[2], Vec2(50.5, 99));
+  set_profile_key(profile, "keep_out_mm=0x0,9x0,9x9;20x20,29x20,29x29;40x40,49x40,49x49");
+  EXPECT_EQ(profile.keep_out_mm.size(), 3U);
+  check_settings(profile);
+  set_profile_key(profile, "plate_mm=");
+  set_profile_key(profile, "keep_out_mm=");
+  EXPECT_TRUE(profile.plate().is_whole());
+  EXPECT_THROW(set_profile_key(profile, "plate_mm=1,2,3"), Error);
+  EXPECT_THROW(set_profile_key(profile, "plate_mm=0x0,nanx1,1x1"), Error);
+
+  const auto refused = [&](const std::string& line) { return refusal(kSmall + line + "\n"); };
+  EXPECT_THAT(refused("plate_mm = [[0, 0], [50, 50], [50, 0], [0, 50]]"), HasSubstr("meet"));
+  EXPECT_THAT(refused("plate_mm = [[0, 0], [50, 50]]"), HasSubstr("2 corners"));
+  EXPECT_THAT(refused("plate_mm = [[-50, 0], [50, 50], [50, 0]]"),
+              HasSubstr("corner 1 is at -50, 0"));
+  EXPECT_THAT(refused("plate_mm = [[0, 0, 0], [50, 50, 0], [50, 0, 0]]"), HasSubstr("points"));
+  EXPECT_THAT(refused("plate_mm = [[[0, 0], [50, 50], [50, 0]]]"), HasSubstr("points"));
+  EXPECT_THAT(refused("plate_mm = [1, 2]"), HasSubstr("points"));
+  EXPECT_THAT(refused("keep_out_mm = [[[0, 0], [5, 0], [9, 0]]]"), HasSubstr("no area"));
+  EXPECT_THAT(refused("keep_out_mm = [[[200, 0], [205, 0], [209, 9]]]"),
+              HasSubstr("area 1 lies outside of build_mm"));
+}
+
 TEST_F(ProfileTest, MutatedProfilesNeverEndInAnythingElse) {
   const std::string original = shipped_text("replicator");
   const std::string interesting = "\"'[]{}=.,#\n\r\t\\-+0e9\xff\xc3\x00n_ifu";

@@ -146,5 +146,30 @@ TEST(CheckMoves, TheShippedStartAndEndTextsStayInside) {
   }
 }
 
+TEST(CheckMoves, WhatIsExtrudedStaysOffThePlatesWalls) {
+  const Box3 volume(Vec3(0, 0, 0), Vec3(100, 100, 100));
+  const Plate plate({{50, 0}, {100, 50}, {50, 100}, {0, 50}}, {{{48, 48}, {52, 48}, {50, 52}}});
+  const auto line_of = [&](const std::string& moves) {
+    const auto fault =
+        check_moves("G28\nG90\nM82\nG1 Z1 F900\n" + moves, volume, GcodeRules::kMarlin, plate);
+    return fault ? fault->line : 0;
+  };
+  EXPECT_EQ(line_of("G1 X50 Y10\nG1 X90 Y50 E1\nG1 X50 Y90 E2\n"), 0);
+  EXPECT_EQ(line_of("G1 X5 Y5\nG1 X95 Y95\n"), 0);       // travel
+  EXPECT_EQ(line_of("G1 X50 Y10\nG1 X90 Y10 E1\n"), 6);  // ends beyond the edge
+  EXPECT_EQ(line_of("G1 X20 Y50\nG1 X80 Y50 E1\n"), 6);  // through the kept-out area
+  EXPECT_EQ(line_of("G1 X20 Y50\nG1 X80 Y50\nG1 X81 E1\n"), 0);
+}
+
+TEST(CheckMoves, ThePlateIsInTheMachinesCoordinates) {
+  Profile profile;
+  profile.build_mm = {100, 80, 50};
+  profile.origin = Origin::kCenter;
+  profile.plate_mm = {{0, 0}, {100, 0}, {0, 80}};
+  const Plate plate = machine_plate(profile);
+  EXPECT_GT(plate.nearest_wall(Vec2(-40, -30)).clearance_mm, 0);
+  EXPECT_LT(plate.nearest_wall(Vec2(40, 30)).clearance_mm, 0);
+}
+
 }  // namespace
 }  // namespace packmerger

@@ -55,6 +55,10 @@ TEST(SlicerSettings, FollowFromTheProfile) {
   EXPECT_NE(config.values.at("start_gcode").find("\\nG162"), std::string::npos);
   EXPECT_EQ(config.values.at("start_gcode").find('\n'), std::string::npos);
   EXPECT_EQ(slicer_config(profile, SliceFlavour::kFigures, 50).values.at("gcode_flavor"), "marlin");
+  Profile triangular = profile;
+  triangular.plate_mm = {{0, 0}, {225, 0}, {100, 145}};
+  EXPECT_EQ(slicer_config(triangular, SliceFlavour::kProgram, 50).values.at("bed_shape"),
+            "-112.5x-72.5,112.5x-72.5,-12.5x72.5");
 }
 
 TEST(SlicerSettings, LeavesOutWhatHasNoRoom) {

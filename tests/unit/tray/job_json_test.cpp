@@ -65,7 +65,10 @@ TEST(JobJson, HasEveryKeyOfTheContract) {
   for (const Json& input : json["inputs"])
     expect_keys(input, {{"file", "s"}, {"sha256", "s"}, {"scale", "n"}}, "inputs");
   expect_keys(json["profile"], {{"id", "s"}, {"sha256", "s"}}, "profile");
-  expect_keys(json["printer"], {{"build_mm", "a"}, {"support_angle_deg", "n"}}, "printer");
+  expect_keys(
+      json["printer"],
+      {{"build_mm", "a"}, {"plate_mm", "a"}, {"keep_out_mm", "a"}, {"support_angle_deg", "n"}},
+      "printer");
   expect_keys(json["shell"], {{"volume_mm3", "n"}, {"wall_mm", "n"}}, "shell");
   expect_keys(json["segments"],
               {{"tetrahedra", "i"}, {"clusters", "i"}, {"after_premerge", "i"}, {"final", "i"}},
