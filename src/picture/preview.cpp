@@ -32,13 +32,14 @@ Box3 add_models(Scene& scene, const Job& job, double right_mm) {
   depth = std::ceil((depth + 2 * kMarginMm) / step) * step;
 
   const Box3 plate(Vec3(right_mm - width, 0, 0), Vec3(right_mm, depth, height));
-  add_plate(scene, plate);
+  const Ground ground(plate);
+  add_plate(scene, ground);
   double x = plate.min().x() + kMarginMm;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Vec3 low(x, (depth - boxes[i].sizes().y()) / 2, 0);
     Pose pose = Pose::Identity();
     pose.translation() = low - boxes[i].min();
-    add_standing(scene, job.models[i], pose, model_colour(), plate);
+    add_standing(scene, job.models[i], pose, model_colour(), ground);
     x += boxes[i].sizes().x() + kMarginMm;
   }
   return plate;
@@ -62,11 +63,12 @@ Image preview_picture(const Job& job) {
     Pose aside = Pose::Identity();
     aside.translation().x() = (tray - 1) * (build.x() + apart);
     const Box3 volume(aside.translation(), aside.translation() + build);
-    add_plate(scene, volume);
-    add_volume(scene, volume);
+    const Ground ground(volume, job.profile.plate());
+    add_plate(scene, ground);
+    add_volume(scene, ground);
     for (const JobPart& part : job.parts)
       if (part.tray == tray)
-        add_standing(scene, part.surface, aside * part.pose, part_colour(part.id - 1), volume);
+        add_standing(scene, part.surface, aside * part.pose, part_colour(part.id - 1), ground);
     all.push_back(volume);
   }
   return draw(scene, distant_camera(all, kView, kWidth, kHeight), kWidth, kHeight);

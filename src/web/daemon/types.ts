@@ -170,6 +170,7 @@ export interface UploadRules {
   formats: string[];  // as people call them
 }
 
+export type Vec2 = [number, number];
 export type Vec3 = [number, number, number];
 
 export interface Part {
@@ -184,7 +185,8 @@ export interface Part {
 export interface Report {
   inputs: { file: string; size_mm?: Vec3 }[];
   variant: string;
-  printer: { name: string; dialect: string; build_mm: Vec3 };
+  // Where parts may stand, and where not; jobs of earlier versions do not tell.
+  printer: { name: string; dialect: string; build_mm: Vec3; plate_mm?: Vec2[]; keep_out_mm?: Vec2[][] };
   parts?: Part[];
   removal_order?: number[];
   removal_path?: Record<string, Vec3[]>;

@@ -56,7 +56,7 @@ export class Scene {
     const lift = LIFT * box.getSize(new Vector3()).y + 0.02;
     this.parts = parts.map(({ id, mesh }) =>
       new DrawnPart(id, mesh, report ? new Way(report.removal_path?.[String(id)] ?? [], lift) : null));
-    this.plates = report ? new Plates(report.printer.build_mm, Math.max(...report.parts.map((part) => part.tray))) : null;
+    this.plates = report ? new Plates(report.printer, Math.max(...report.parts.map((part) => part.tray))) : null;
     this.space.add(...parts.map((part) => part.mesh));
     if (this.plates) this.space.add(this.plates);
     this.light();

@@ -60,6 +60,21 @@ TEST(Preview, DrawsAJobWithoutModels) {
   EXPECT_GT(pixels_of(preview_picture(job), part_colour(0)), 1500);
 }
 
+TEST(Preview, ShowsThePlateThatThereIs) {
+  Job job = fixtures::sample_job();
+  job.parts.clear();
+  const Image whole = preview_picture(job);
+  const double x = job.profile.build_mm[0];
+  const double y = job.profile.build_mm[1];
+  const Colour barred{0.80F, 0.45F, 0.38F};
+  const int before = pixels_of(whole, barred);
+  job.profile.keep_out_mm = {{{x / 4, y / 4}, {x / 2, y / 4}, {x / 2, y / 2}}};
+  EXPECT_GT(pixels_of(preview_picture(job), barred), before + 50);
+  job.profile.keep_out_mm.clear();
+  job.profile.plate_mm = {{0, 0}, {x, 0}, {0, y}};
+  EXPECT_NE(preview_picture(job).rgba, whole.rgba);
+}
+
 TEST(Preview, DrawsModelsFarTooLargeForThePrinter) {
   Job job = fixtures::sample_job();
   job.models = {closed_mesh(fixtures::sphere(400, 3))};
