@@ -10,7 +10,6 @@ namespace packmerger {
 namespace {
 
 constexpr double kToleranceMm = 0.01;  // programs carry three digits
-constexpr double kBetweenLooksMm = 2;
 constexpr const char* kAxes = "XYZ";
 
 std::optional<std::string> judge(const Box3& volume, int axis, double mm) {
@@ -22,20 +21,32 @@ std::optional<std::string> judge(const Box3& volume, int axis, double mm) {
                      kAxes[axis], mm, beyond, low, high);
 }
 
-// Arcs are judged by their chords' ends: what fills a part is far finer than a wall.
+// Chords instead of arcs: they leave them by less than the tolerance.
+std::vector<Vec2> way_of(const GcodeStep& step) {
+  const Vec2 to(*step.to[0], *step.to[1]);
+  std::vector<Vec2> way{Vec2(step.from[0].value_or(to.x()), step.from[1].value_or(to.y()))};
+  const int pieces = step.arc ? step.arc->pieces(kToleranceMm) : 1;
+  for (int i = 1; i < pieces; ++i) way.push_back(step.arc->at(static_cast<double>(i) / pieces));
+  way.push_back(to);
+  return way;
+}
+
 std::optional<std::string> judge(const Plate& plate, const GcodeStep& step) {
   if (!step.to[0] || !step.to[1]) return std::nullopt;
-  const Vec2 to(*step.to[0], *step.to[1]);
-  const Vec2 from(step.from[0].value_or(to.x()), step.from[1].value_or(to.y()));
-  const int steps = 1 + static_cast<int>((to - from).norm() / kBetweenLooksMm);
-  for (int i = 0; i <= steps; ++i) {
-    const Vec2 at = from + (to - from) * i / steps;
-    const double beyond = -plate.nearest_wall(at).clearance_mm;
-    if (beyond > kToleranceMm)
-      return fmt::format(
-          "extrudes at X {:.2f} Y {:.2f}, {:.2f} mm beyond the edge of the plate or over a "
-          "kept-out area",
-          at.x(), at.y(), beyond);
+  const std::vector<Vec2> way = way_of(step);
+  const auto fault = [](const Vec2& at, double beyond) {
+    return fmt::format(
+        "extrudes near X {:.2f} Y {:.2f}, {:.2f} mm beyond the edge of the plate or over a "
+        "kept-out area",
+        at.x(), at.y(), beyond);
+  };
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const double beyond = -plate.nearest_wall(way[i]).clearance_mm;
+    if (beyond > kToleranceMm) return fault(way[i], beyond);
+    if (i == 0) continue;
+    for (const Polygon& area : plate.barred())
+      if (const double depth = depth_within(area, way[i - 1], way[i]); depth > kToleranceMm)
+        return fault(way[i], depth);
   }
   return std::nullopt;
 }

@@ -34,8 +34,8 @@ GcodeRules gcode_rules(const Profile& profile);
 // recalled or set pass as long as nothing is extruded. G92 on a known axis shifts the coordinates
 // and moves nothing. A command that cannot be followed is a fault (gcode/known_codes.h): what is
 // unknown is not judged.
-// Where the plate has walls, moves that extrude stay off them, by the ends of lines and at steps of
-// some millimetres between; travel passes over them.
+// Where the plate has walls, moves that extrude stay off them, arcs as well as lines; travel passes
+// over them.
 std::optional<MoveFault> check_moves(std::string_view gcode, const Box3& volume, GcodeRules rules,
                                      const Plate& plate = {});
 

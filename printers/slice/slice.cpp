@@ -136,10 +136,6 @@ void run_slicer(const fs::path& folder, const Progress& progress) {
                          : "Repair the model, then try again.");
 }
 
-}  // namespace
-
-namespace {
-
 double room_to_walls_mm(const Plate& plate, const Tray& tray) {
   double room_mm = std::numeric_limits<double>::infinity();
   if (plate.is_whole()) return room_mm;

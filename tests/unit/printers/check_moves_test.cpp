@@ -159,6 +159,9 @@ TEST(CheckMoves, WhatIsExtrudedStaysOffThePlatesWalls) {
   EXPECT_EQ(line_of("G1 X50 Y10\nG1 X90 Y10 E1\n"), 6);  // ends beyond the edge
   EXPECT_EQ(line_of("G1 X20 Y50\nG1 X80 Y50 E1\n"), 6);  // through the kept-out area
   EXPECT_EQ(line_of("G1 X20 Y50\nG1 X80 Y50\nG1 X81 E1\n"), 0);
+  EXPECT_EQ(line_of("G1 X30 Y50\nG2 X70 Y50 I20 J0 E1\n"), 0);   // half round the kept-out area
+  EXPECT_EQ(line_of("G1 X46 Y45\nG2 X54 Y45 I4 J0 E1\n"), 6);    // over it
+  EXPECT_EQ(line_of("G1 X25 Y40\nG3 X40 Y25 I0 J-15 E1\n"), 6);  // and over the edge
 }
 
 TEST(CheckMoves, ThePlateIsInTheMachinesCoordinates) {
