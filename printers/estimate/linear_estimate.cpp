@@ -1,5 +1,7 @@
 #include "printers/estimate/linear_estimate.h"
 
+#include <algorithm>
+
 namespace packmerger {
 namespace {
 
@@ -25,6 +27,22 @@ constexpr LinearTerm kPolyjetSupport[] = {
      [](P, T t) { return t.held_mm3 / 1000; }},
 };
 
+// A new bed of the same mass needs so much new powder: of what was heated and not fused, more is
+// left than it takes where less was fused.
+double lost_powder_g(P p, T t) {
+  const double fused_g = t.model_mm3 / 1000 * p.material.model_density_g_cm3;
+  const double loose_g = (t.bed_mm3 - t.model_mm3) / 1000 * p.material.support_density_g_cm3;
+  return std::max(0.0, p.powder.refresh_fraction * (fused_g + loose_g) - fused_g);
+}
+
+constexpr LinearTerm kPowderTime[] = {
+    {"powder.start_s", [](P p) { return p.powder.start_s; },
+     [](P, T t) { return static_cast<double>(t.trays); }},
+    {"powder.layer_s", [](P p) { return p.powder.layer_s; }, [](P, T t) { return t.layers; }},
+};
+constexpr LinearTerm kPowderModel[] = {{"", one, [](P, T t) { return t.model_mm3; }}};
+constexpr LinearTerm kPowderLost[] = {{"", one, lost_powder_g}};
+
 constexpr LinearTerm kFdmStart{"fdm.start_s", [](P p) { return p.fdm.start_s; },
                                [](P, T t) { return static_cast<double>(t.trays); }};
 constexpr LinearTerm kDepositionTime[] = {
@@ -41,6 +59,7 @@ constexpr LinearTerm kFdmSupport[] = {
 };
 
 constexpr LinearEstimate kPolyjet{kPolyjetTime, kPolyjetModel, kPolyjetSupport};
+constexpr LinearEstimate kPowder{kPowderTime, kPowderModel, kPowderLost};
 constexpr LinearEstimate kDeposition{kDepositionTime, kFdmModel, kFdmSupport};
 constexpr LinearEstimate kPath{kPathTime, kFdmModel, kFdmSupport};
 
@@ -54,6 +73,7 @@ double sum(std::span<const LinearTerm> linear, const Profile& profile, const Pri
 
 const LinearEstimate& linear_estimate(Estimator estimator) {
   if (estimator == Estimator::kPolyjet) return kPolyjet;
+  if (estimator == Estimator::kPowder) return kPowder;
   return estimator == Estimator::kDeposition ? kDeposition : kPath;
 }
 

@@ -1,6 +1,7 @@
 #include "printers/estimate/print_terms.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "base/error.h"
@@ -29,6 +30,12 @@ void require_toolpath(const Profile& profile) {
   require_positive(profile, settings.min_speed_mm_s, "fdm.min_speed_mm_s");
 }
 
+double bed_mm3(const Profile& profile, double height_mm) {
+  const double area_mm2 = profile.plate_mm.empty() ? profile.build_mm[0] * profile.build_mm[1]
+                                                   : std::abs(signed_area_mm2(profile.plate_mm));
+  return area_mm2 * height_mm;
+}
+
 BothTerms terms_of(const Profile& profile, const Tray& tray) {
   std::vector<const Mesh*> parts;
   for (const Mesh& part : tray.parts) parts.push_back(&part);
@@ -42,6 +49,7 @@ BothTerms terms_of(const Profile& profile, const Tray& tray) {
   for (const Mesh* part : parts) terms.model_mm3 += volume_mm3(*part);
   terms.support_mm3 = support_volume_mm3(parts, radians(profile.support_angle_deg));
   terms.held_mm3 = terms.support_mm3;
+  if (terms.by == Estimator::kPowder) terms.bed_mm3 = bed_mm3(profile, top_of(parts));
   BothTerms both{terms, terms};
   if (terms.by == Estimator::kPolyjet) add_passes(both, profile, parts);
   return both;
@@ -51,6 +59,7 @@ BothTerms terms_of(const Profile& profile, const Tray& tray) {
 
 Estimator estimator_of(const Profile& profile) {
   if (profile.technology == Technology::kPolyjet) return Estimator::kPolyjet;
+  if (profile.technology == Technology::kPowder) return Estimator::kPowder;
   return profile.fdm.time == FdmTime::kDeposition ? Estimator::kDeposition : Estimator::kPath;
 }
 
@@ -66,6 +75,7 @@ PrintTerms& PrintTerms::operator+=(const PrintTerms& other) {
   model_mm3 += other.model_mm3;
   support_mm3 += other.support_mm3;
   held_mm3 += other.held_mm3;
+  bed_mm3 += other.bed_mm3;
   path_s += other.path_s;
   return *this;
 }
@@ -105,6 +115,7 @@ PrintTerms predicted_terms(const Profile& profile, const TrayMeasure& tray) {
   terms.support_mm3 = terms.held_mm3 = tray.support_mm3;
   if (terms.by == Estimator::kPolyjet)
     add_passes(terms, profile.polyjet, terms.layers, tray.size_mm.x(), tray.size_mm.y());
+  if (terms.by == Estimator::kPowder) terms.bed_mm3 = bed_mm3(profile, tray.size_mm.z());
   if (terms.by == Estimator::kPath) {
     const FdmSettings& settings = profile.fdm;
     const double path_mm = tray.material_mm3 / bead(settings, profile.layer_mm).area_mm2;
@@ -122,6 +133,8 @@ void require_constants(const Profile& profile) {
   switch (estimator_of(profile)) {
     case Estimator::kPolyjet:
       return require_positive(profile, profile.polyjet.swath_mm, "polyjet.swath_mm");
+    case Estimator::kPowder:
+      return require_positive(profile, profile.powder.layer_s, "powder.layer_s");
     case Estimator::kDeposition:
       return require_positive(profile, profile.fdm.deposition_cm3_h, "fdm.deposition_cm3_h");
     case Estimator::kPath:

@@ -14,6 +14,7 @@ namespace packmerger {
 
 enum class Estimator {
   kPolyjet,
+  kPowder,      // layers, and the bed of powder round the parts
   kDeposition,  // FDM by deposition rate
   kPath         // time is measured along a path: FDM by tool path, or the slicer's program
 };
@@ -32,6 +33,7 @@ struct PrintTerms {
   double model_mm3 = 0;    // matter; kPath: the beads
   double support_mm3 = 0;  // V_s
   double held_mm3 = 0;     // V_s less what a tool path bridges
+  double bed_mm3 = 0;      // kPowder: up to the highest part, parts included
   double path_s = 0;       // kPath: time without start_s
 
   PrintTerms& operator+=(const PrintTerms& other);  // of the same estimator

@@ -17,7 +17,15 @@ struct Arguments {
 };
 
 const char* technology_name(const Profile& profile) {
-  return profile.technology == Technology::kPolyjet ? "polyjet" : "fdm";
+  switch (profile.technology) {
+    case Technology::kPolyjet:
+      return "polyjet";
+    case Technology::kPowder:
+      return "powder";
+    case Technology::kFdm:
+      break;
+  }
+  return "fdm";
 }
 
 void list(bool json) {

@@ -112,9 +112,10 @@ void centre(Arrangement& arrangement, const Profile& profile, const Plate& plate
 }
 
 // Turning segments into parts may move a cut by a little, so a part may stand a little too deep.
-void lift_above_plate(Arrangement& arrangement) {
+void lift_above_plate(Arrangement& arrangement, const Room& room) {
   for (JobPart& part : arrangement.parts) {
-    const double lowest = bounding_box(transformed(part.surface, part.pose)).min().z();
+    const double lowest =
+        bounding_box(transformed(part.surface, part.pose)).min().z() - room.corner_mm.z();
     if (lowest < 0) part.pose.pretranslate(Vec3(0, 0, -lowest));
   }
 }
@@ -176,7 +177,7 @@ Arrangement pack_models(const Models& models, const Profile& profile, std::uint6
   for (int attempt = 0; attempt < 3; ++attempt) {
     const Packing packing = pack(problem, progress);
     Arrangement arrangement = arrange(models, problem, packing, room, progress);
-    lift_above_plate(arrangement);
+    lift_above_plate(arrangement, room);
     centre(arrangement, profile, room.plate);
     broken = broken_promise(arrangement, profile.pack.gap_mm, room, progress);
     if (!broken) return arrangement;

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "job/comparison_key.h"
 #include "job/plan_steps.h"
+#include "job/powder.h"
 #include "job/timings.h"
 #include "printers/estimate/estimate.h"
 #include "printers/slice/slice.h"
@@ -151,28 +152,37 @@ Plan plan(const Profile& profile, const PlanOptions& options, const Progress& pr
   WholeModels shells;
   DividedModels models;
   std::map<std::string, Refusal, std::less<>>& refused = plan.job.estimates.refused;
+  const auto keeps_powder =
+      refusal_of([&] { require_openings(surfaces_of(loaded), profile, progress); });
   Beside beside;
-  beside.run([&] { plan.solid = stand_best(surfaces_of(loaded), profile, silent); });
+  if (keeps_powder)
+    refused["as_is"] = refused["solid"] = *keeps_powder;
+  else
+    beside.run([&] { plan.solid = stand_best(surfaces_of(loaded), profile, silent); });
   const auto undivided = timed(times, "divide", [&] {
     return refusal_of([&] { models = divide_all(loaded, profile, options, warnings, progress); });
   });
   record(plan.job, loaded, models);
   const auto not_hollow = undivided ? undivided : refusal_of([&] {
     shells = shells_of(models, profile, options, warnings, progress);
+    require_openings(shells, profile, progress);
   });
   if (not_hollow)
     refused["hollow"] = *not_hollow;
   else
     beside.run([&] { plan.hollow = stand_best(shells, profile, silent); });
-  if (undivided)
-    refused["packed"] = *undivided;
-  else
-    timed(times, "pack", [&] { pack_into(plan, models, profile, options, progress); });
+  const auto not_packed = undivided ? undivided : timed(times, "pack", [&] {
+    return refusal_of([&] { pack_into(plan, models, profile, options, progress); });
+  });
+  if (not_packed) {
+    refused["packed"] = *not_packed;
+    plan.packed.reset();
+  }
   timed(times, "estimate", [&] {
     progress.report("estimating", 0);
     beside.wait();
-    compare_ways(plan, stand_as_is(surfaces_of(loaded), profile), whole_pieces(models, options),
-                 profile, progress);
+    compare_ways(plan, keeps_powder ? std::nullopt : stand_as_is(surfaces_of(loaded), profile),
+                 whole_pieces(models, options), profile, progress);
   });
 
   if (const auto none = none_can_be_made(plan))

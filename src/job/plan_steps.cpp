@@ -5,6 +5,7 @@
 
 #include "job/choose_division.h"
 #include "job/pack_models.h"
+#include "job/powder.h"
 #include "shape/solid/hollow.h"
 
 namespace packmerger {
@@ -67,14 +68,33 @@ std::optional<double> resample_tolerance_mm(const DividedModels& models) {
   return most;
 }
 
+namespace {
+
+WholeModels kept_whole(const DividedModels& models) {
+  std::map<const Divided*, std::shared_ptr<const Mesh>> done;
+  WholeModels whole;
+  for (const auto& model : models) {
+    if (model->tets.count() > 0) continue;
+    std::shared_ptr<const Mesh>& surface = done[model.get()];
+    if (!surface) surface = std::make_shared<const Mesh>(shell_surface(model->shell));
+    whole.push_back(surface);
+  }
+  return whole;
+}
+
+}  // namespace
+
 void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
                const PlanOptions& options, const Progress& progress) {
+  require_openings(kept_whole(models), profile, progress);
   try {
     plan.packed = pack_models(models, profile, options.seed, options.budget_s, progress);
   } catch (const Error& error) {
     if (error.fault() != Fault::kBadInput) throw;
     plan.not_packed = error;
+    return;
   }
+  require_no_sealed_cavity(*plan.packed, profile);
 }
 
 void record_inputs(Job& job, const std::vector<LoadedModel>& loaded) {

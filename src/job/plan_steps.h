@@ -39,7 +39,8 @@ WholePieces whole_pieces(const DividedModels& models, const PlanOptions& options
 // What each surface was allowed to move where any was re-sampled; empty where none was.
 std::optional<double> resample_tolerance_mm(const DividedModels& models);
 
-// Packs them. What fits no tray is an outcome that a comparison shows: plan.not_packed.
+// Packs them. What fits no tray is an outcome that a comparison shows: plan.not_packed. Throws
+// Error{kBadInput} where powder would stay in a part.
 void pack_into(Plan& plan, const DividedModels& models, const Profile& profile,
                const PlanOptions& options, const Progress& progress);
 

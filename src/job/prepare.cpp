@@ -38,8 +38,8 @@ Arrangement take(Plan& plan, Variant variant) {
 // Whatever way was chosen: nothing is written that breaks a promise.
 void prove(const Arrangement& arrangement, const Profile& profile, const Progress& progress) {
   progress.report("proving", 0);
-  const Room whole{Vec3::Zero(), profile.build(), profile.plate()};
-  if (const auto broken = broken_promise(arrangement, profile.pack.gap_mm, whole, progress))
+  if (const auto broken =
+          broken_promise(arrangement, profile.pack.gap_mm, whole_room(profile), progress))
     throw Error(Fault::kInternal, broken->what,
                 "Nothing was written. Try another --seed or --variant, and report this model.");
 }

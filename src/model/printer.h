@@ -16,7 +16,7 @@
 
 namespace packmerger {
 
-enum class Technology { kPolyjet, kFdm };
+enum class Technology { kPolyjet, kFdm, kPowder };
 enum class Objective { kPaper, kPrinter, kHeight };  // what the packer minimises
 enum class Placement { kDrop, kAnywhere };           // how parts come to their places
 enum class Segmentation { kPaper, kPrinter };        // how the shell is divided
@@ -64,6 +64,13 @@ struct PolyjetSettings {
   double per_mm_x_s = 0;
   double support_g_per_cm3 = 0;   // effective: coat, pedestal and purge included
   double model_waste_factor = 1;  // deposited mass over the model's mass
+};
+
+// Parts that a laser or a lamp fuses in a bed of powder (SLS, MJF): nothing needs support.
+struct PowderSettings {
+  double start_s = 0;           // warming up, and cooling until the next tray may begin
+  double layer_s = 0;           // spreading and fusing
+  double refresh_fraction = 0;  // of a new bed's mass: powder that was never heated
 };
 
 struct FdmSettings {
@@ -146,6 +153,7 @@ struct Profile {
   PackSettings pack;
   PolyjetSettings polyjet;
   FdmSettings fdm;
+  PowderSettings powder;
   MaterialSettings material;
   CostSettings cost;
   SlicerSettings slicer;

@@ -140,6 +140,7 @@ BREAKS = {
     "over an area inside one triangle": (set_at("printer", "keep_out_mm",
                                                 value=[[[20, 20], [20.1, 20], [20.1, 20.1], [20, 20.1]]]),
                                          "over no kept-out area"),
+    "on the floor of a bed of powder": (set_at("settings", "technology", value="powder"), "to the walls of the bed"),
     "a mirrored part": (mirror, "rigid transform"),
     "a scaled transform": (set_at("parts", 0, "transform", 0, value=1.001), "rigid transform"),
     "too close": (move_part(2, [0, 0, -0.51]), "parts keep gap_mm"),

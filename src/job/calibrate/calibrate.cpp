@@ -65,7 +65,7 @@ FitUnknown unknown(const Profile& profile, const LinearTerm& term) {
     unknown.low = 3600 / limits.most;
     unknown.high = 3600 / kLeastRate_cm3_h;
   }
-  if (term.key == "polyjet.layer_s") unknown.low = kLeastLayer_s;
+  if (term.key == "polyjet.layer_s" || term.key == "powder.layer_s") unknown.low = kLeastLayer_s;
   unknown.scales = !term.key.ends_with(".start_s");
   return unknown;
 }
@@ -80,6 +80,8 @@ MainConstants main_constants(Estimator estimator) {
   switch (estimator) {
     case Estimator::kPolyjet:
       return {{"polyjet.layer_s", "polyjet.swath_s"}, "layers and passes"};
+    case Estimator::kPowder:
+      return {{"powder.layer_s"}, "layers"};
     case Estimator::kDeposition:
       return {{kRate, "fdm.layer_s"}, "deposition and layers"};
     case Estimator::kPath:
@@ -138,6 +140,11 @@ void take_over(Profile& profile, const FitTask& task, const std::vector<FittedUn
   }
 }
 
+// Where a constant of the profile tells it.
+bool teaches_support(Estimator estimator) {
+  return estimator != Estimator::kPath && !linear_estimate(estimator).support_g.front().key.empty();
+}
+
 class Fit {
  public:
   Fit(const Profile& profile, const std::vector<CalibrationPrint>& prints) : prints_(prints) {
@@ -149,7 +156,7 @@ class Fit {
                                 profile.material.model_density_g_cm3 / 1000));
     else
       refuse_material(kModel);
-    if (estimator != Estimator::kPath)
+    if (teaches_support(estimator))
       fit(kSupport, material_task(profile, linear.support_g.front(), 1));
     else
       refuse_material(kSupport);
@@ -276,7 +283,7 @@ Calibration calibrate(const Profile& profile, const std::vector<CalibrationPrint
   judge(calibration, profile, kTime, prints);
   const Estimator estimator = taught_estimator_of(profile);
   if (estimator == Estimator::kPolyjet) judge(calibration, profile, kModel, prints);
-  if (estimator != Estimator::kPath) judge(calibration, profile, kSupport, prints);
+  if (teaches_support(estimator)) judge(calibration, profile, kSupport, prints);
   warn_of_exact_fits(calibration);
   return calibration;
 }

@@ -22,7 +22,16 @@ Assembly assembly_of(const Arrangement& arrangement) {
   return assembly;
 }
 
+Room whole_room(const Profile& profile) {
+  if (profile.technology != Technology::kPowder)
+    return {Vec3::Zero(), profile.build(), profile.plate()};
+  const double gap_mm = profile.pack.gap_mm;
+  const Vec3 corner = Vec3::Constant(gap_mm);
+  return {corner, profile.build() - 2 * corner, profile.plate().drawn_in(Vec2(0, 0), gap_mm)};
+}
+
 Room room_of(const Profile& profile) {
+  if (profile.technology == Technology::kPowder) return whole_room(profile);
   const double margin = slicer_margin_mm(profile);
   const Vec3 corner(margin, margin, 0);
   return {corner, profile.build() - 2 * corner, profile.plate().drawn_in(Vec2(0, 0), margin)};

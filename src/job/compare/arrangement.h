@@ -26,13 +26,18 @@ std::vector<Tray> trays_of(const Arrangement& arrangement);
 
 Assembly assembly_of(const Arrangement& arrangement);
 
-// Where parts may stand: the build volume less a margin for the support that a slicer puts beside
-// them. A part's place is counted from the volume's own corner.
+// Where parts may be. A part's place is counted from the build volume's own corner.
 struct Room {
   Vec3 corner_mm = Vec3::Zero();
   Vec3 size_mm = Vec3::Zero();
   Plate plate{};  // its walls drawn in by the margin, in the build volume's coordinates
 };
+
+// At all: the build volume; in powder, which must be all round a part, less the gap to every wall,
+// floor and ceiling.
+Room whole_room(const Profile& profile);
+
+// Less a margin for the support that a slicer puts beside parts.
 Room room_of(const Profile& profile);
 
 // What the packer's objective sees, taken from the exact meshes.

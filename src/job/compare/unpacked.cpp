@@ -64,8 +64,6 @@ bool fits(const Mesh& model, const Mat3& way, const Room& room) {
   return plate.spot_for(transformed(model, Pose(way)), room.size_mm.head<2>()).has_value();
 }
 
-Room whole_room(const Profile& profile) { return {Vec3::Zero(), profile.build(), profile.plate()}; }
-
 // The margin for support is given up where a model fills the build volume.
 Room room_for(const WholeModels& models, const std::vector<Mat3>& ways, const Profile& profile) {
   const Room room = room_of(profile);
@@ -133,6 +131,7 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     part.surface = *models[m];
     part.volume_mm3 = volume_mm3(*models[m]);
     part.pose = standing_at(ways[m], boxes[m], slots[m].corner + room.corner_mm.head<2>());
+    part.pose.pretranslate(Vec3(0, 0, room.corner_mm.z()));
     arrangement.trays = std::max(arrangement.trays, part.tray);
     arrangement.removal_order.push_back(part.id);
     arrangement.parts.push_back(std::move(part));

@@ -18,10 +18,13 @@ struct Family {
 };
 
 // The last one is for whatever the others do not name.
-const std::array<Family, 4> kFamilies = {{
+const std::array<Family, 5> kFamilies = {{
     {"objet30",
      "for printers that harden droplets of resin (PolyJet)",
      {"objet", "polyjet", "connex", "eden", "stratasysj"}},
+    {"fuse1",
+     "for printers that fuse powder (SLS, MJF)",
+     {"fuse", "sinter", "multijetfusion", "formiga", "eosint"}},
     {"uprint",
      "for Stratasys' printers that are handed a file",
      {"uprint", "dimension", "fortus", "stratasys", "mojo"}},

@@ -104,8 +104,10 @@ void add_machine(Profile& p, std::vector<Key>& keys) {
       {{"id", TextKey{&p.id, id_form()}, "",
         "What the profile is called on the command line; without it, the file's name less .toml."},
        {"name", TextKey{&p.name, one_line()}, "", "The machine's name, for people.", true},
-       {"technology", choice(p.technology, {"polyjet", "fdm"}), "",
-        "Which estimator fits: jetted photopolymer in full support, or extruded filament.", true},
+       {"technology", choice(p.technology, {"polyjet", "fdm", "powder"}), "",
+        "Which estimator fits: jetted photopolymer in full support, extruded filament, or powder "
+        "that is fused in its bed.",
+        true},
        {"dialect", choice(p.dialect, dialect_names()), "", dialect_meaning(), true},
        {"document", choice(p.document, {"tray_stl", "tray_3mf"}), "",
         "The document that dialects handoff and usb deliver: tray.stl or tray.3mf."},
@@ -122,7 +124,7 @@ void add_machine(Profile& p, std::vector<Key>& keys) {
        {"layer_mm", NumberKey{&p.layer_mm, above(0, 2)}, "mm", "The height of a layer.", true},
        {"support_angle_deg", NumberKey{&p.support_angle_deg, from_to(0, 90)}, "degrees",
         "A facet needs support when its normal points down by more than this below the horizontal; "
-        "0: every down-facing facet."}});
+        "0: every down-facing facet, 90: none."}});
 }
 
 void add_shape(ShapeSettings& s, std::vector<Key>& keys) {
@@ -204,6 +206,18 @@ void add_polyjet(PolyjetSettings& s, std::vector<Key>& keys) {
         "Support mass per volume below down-facing facets, coat, pedestal and purge included."},
        {"polyjet.model_waste_factor", NumberKey{&s.model_waste_factor, from_to(1, 10)}, "",
         "Model material used over what stays in the part."}});
+}
+
+void add_powder(PowderSettings& s, std::vector<Key>& keys) {
+  keys.insert(
+      keys.end(),
+      {{"powder.start_s", NumberKey{&s.start_s, from_to(0, 604800)}, "s",
+        "Time beside the layers: warming up, and cooling until the next tray may begin."},
+       {"powder.layer_s", NumberKey{&s.layer_s, from_to(0, 600)}, "s",
+        "Time for every layer, from the floor of the build volume to the highest part."},
+       {"powder.refresh_fraction", NumberKey{&s.refresh_fraction, from_to(0, 1)}, "of the bed",
+        "Share of every bed's mass that must be new powder; what is over of the used one is "
+        "thrown away."}});
 }
 
 void add_fdm(FdmSettings& s, std::vector<Key>& keys) {
@@ -324,6 +338,7 @@ std::vector<Key> keys_of(Profile& profile) {
   add_shape(profile.shape, keys);
   add_pack(profile.pack, keys);
   add_polyjet(profile.polyjet, keys);
+  add_powder(profile.powder, keys);
   add_fdm(profile.fdm, keys);
   add_material(profile.material, keys);
   add_cost(profile.cost, keys);
@@ -336,6 +351,14 @@ std::string missing_for_abilities(const Profile& profile) {
   if (const std::string wrong = wrong_with_plate(profile); !wrong.empty()) return wrong;
   if (profile.technology == Technology::kPolyjet && profile.polyjet.layer_s <= 0)
     return "polyjet.layer_s must be above 0 where technology is \"polyjet\"";
+  if (profile.technology == Technology::kPowder) {
+    if (profile.powder.layer_s <= 0)
+      return "powder.layer_s must be above 0 where technology is \"powder\"";
+    if (profile.support_angle_deg < 90)
+      return "support_angle_deg must be 90 where technology is \"powder\": no facet needs support";
+    if (profile.is_sliced())
+      return "dialect must be \"handoff\" or \"usb\" where technology is \"powder\"";
+  }
   if (profile.technology == Technology::kFdm && profile.fdm.time == FdmTime::kDeposition &&
       profile.fdm.deposition_cm3_h <= 0)
     return "fdm.deposition_cm3_h must be above 0 where fdm.time is \"deposition\"";

@@ -39,7 +39,7 @@ JOB = {
 }
 OBJECTIVES = ("paper", "printer", "height")
 SEGMENTATIONS = ("paper", "printer")
-TECHNOLOGIES = ("polyjet", "fdm")
+TECHNOLOGIES = ("polyjet", "fdm", "powder")
 DIALECT_SUFFIX = {"gcode": ".gcode", "s3g": ".x3g"}
 
 

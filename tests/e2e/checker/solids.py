@@ -72,6 +72,7 @@ def matter_faults(corners, index):
 
 def check_solids(job, report):
     build = np.array(job.data["printer"]["build_mm"])
+    gap = job.data["settings"]["gap_mm"]
     walls = Walls(job.data["printer"])
     for part in job.readable_parts():
         name, corners = part["file"], job.triangles[part["id"]]
@@ -90,6 +91,10 @@ def check_solids(job, report):
         low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
         inside = (low >= -BUILD_TOLERANCE_MM).all() and (high <= build + BUILD_TOLERANCE_MM).all()
         report.check(f"{name} is inside build_mm", inside, f"{np.round(low, 3).tolist()} to {np.round(high, 3).tolist()}")
+        if job.data["settings"].get("technology") == "powder":
+            apart = min(low.min(), (build - high).min())
+            report.check(f"{name} keeps gap_mm to the walls of the bed", apart >= gap - BUILD_TOLERANCE_MM,
+                         f"{apart:.4f} mm")
         fault = walls.fault(corners[:, :, :2])
         report.check(f"{name} stands on the plate and over no kept-out area", not fault, fault)
         pose = np.array(part["transform"]).reshape(4, 4)

@@ -51,6 +51,27 @@ TEST_F(RefusedWays, APyramidOnItsTipIsStillComparedOtherWaysUp) {
   EXPECT_TRUE(ways.solid && ways.hollow && ways.packed);
 }
 
+// Of a cube that was hollowed by its maker, and of one that is hollowed here.
+TEST_F(RefusedWays, WhereNoPowderComesOutIsRefused) {
+  Profile profile = read_profile("fuse1");
+  profile.pack.placement = Placement::kDrop;
+  PlanOptions options = options_of(fixtures::nested_cubes(30, 20));
+  options.split = options.hollow = false;
+  EXPECT_THAT(refusal(profile, options, Variant::kSolid), HasSubstr("no opening of 5 mm"));
+
+  options = options_of(fixtures::cube(30));
+  options.split = false;
+  Comparison ways = plan(profile, options, Progress()).job.estimates;
+  EXPECT_TRUE(ways.as_is && ways.solid);
+  EXPECT_TRUE(ways.refused.contains("hollow"));
+  EXPECT_THAT(ways.refused.at("hollow").hint, HasSubstr("two openings of 5 mm"));
+
+  options.hollow = false;
+  ways = plan(profile, options, Progress()).job.estimates;
+  EXPECT_TRUE(ways.refused.empty());
+  EXPECT_TRUE(ways.as_is && ways.solid && ways.packed);
+}
+
 TEST_F(RefusedWays, WhatCannotBeHollowedIsComparedSolid) {
   const PlanOptions options = options_of(fixtures::cube(60));
   Profile profile = read_profile("objet30");

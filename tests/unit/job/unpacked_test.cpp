@@ -57,6 +57,26 @@ TEST(SideBySide, AsManyAsFitShareATray) {
   EXPECT_EQ(trays.size(), 2u);
 }
 
+// Nothing of it: in powder the walls, the floor and the ceiling are as far away as other parts.
+TEST(InPowder, ModelsKeepTheGapToAllWalls) {
+  Profile profile = read_profile("objet30");
+  profile.technology = Technology::kPowder;
+  profile.build_mm = {50, 40, 30};
+  profile.pack.gap_mm = 2;
+  const WholeModels three(3, std::make_shared<const Mesh>(closed_mesh(fixtures::cube(20))));
+  const auto arrangement = stand_as_is(three, profile);
+  ASSERT_TRUE(arrangement);
+  EXPECT_EQ(arrangement->trays, 2);
+  for (const Tray& tray : trays_of(*arrangement))
+    for (const Mesh& part : tray.parts) {
+      const Box3 box = bounding_box(part);
+      EXPECT_GE(box.min().minCoeff(), 2 - 1e-9);
+      EXPECT_GE((profile.build() - box.max()).minCoeff(), 2 - 1e-9);
+    }
+  EXPECT_FALSE(
+      stand_as_is({std::make_shared<const Mesh>(closed_mesh(fixtures::cube(27)))}, profile));
+}
+
 TEST(SideBySide, OneAloneStandsInTheMiddle) {
   const Slot slot = side_by_side({Vec2(20, 10)}, Vec2(100, 50), 1).front();
   EXPECT_EQ(slot.corner, Vec2(40, 20));

@@ -8,12 +8,14 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<std::string> kIds = {"marlin", "objet30", "replicator", "uprint", "uprint-plus"};
+const std::vector<std::string> kIds = {"fuse1",      "marlin", "objet30",
+                                       "replicator", "uprint", "uprint-plus"};
 
 TEST(NearProfile, IsTheMachinesOwnKindElseTheOneForFilament) {
   for (const auto& [name, near] : {std::pair{"ender3", "marlin"},
                                    {"Prusa-MK4", "marlin"},
                                    {"Objet Connex 500", "objet30"},
+                                   {"sinterit_lisa", "fuse1"},
                                    {"makerbot_2x", "replicator"},
                                    {"Dimension-SST", "uprint"},
                                    {"Stratasys J55", "objet30"},

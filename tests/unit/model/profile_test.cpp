@@ -25,8 +25,8 @@ fs::path source_folder() {
   return source == nullptr ? fs::path(".") : fs::path(source);
 }
 
-const std::vector<std::string> kShipped = {"marlin", "objet30", "replicator", "uprint",
-                                           "uprint-plus"};
+const std::vector<std::string> kShipped = {"fuse1",      "marlin", "objet30",
+                                           "replicator", "uprint", "uprint-plus"};
 
 std::string shipped_text(const std::string& id) {
   return read_file(source_folder() / "profiles" / (id + ".toml"), 1 << 20);
@@ -289,7 +289,6 @@ TEST_F(ProfileTest, SetTakesWhatAProfileTakes) {
   EXPECT_EQ(profile_toml(profile), before);
 }
 
-// Cuts, swaps and foreign bytes in a real profile: it is read, or refused with file and line.
 TEST_F(ProfileTest, APlateIsASimplePolygonOnTheTray) {
   Profile profile =
       read_text(kSmall +
@@ -325,6 +324,23 @@ TEST_F(ProfileTest, APlateIsASimplePolygonOnTheTray) {
               HasSubstr("area 1 lies outside of build_mm"));
 }
 
+TEST_F(ProfileTest, PowderNeedsNoSupportAndNoSlicer) {
+  const auto refused = [&](const std::string& support, const std::string& rest) {
+    return refusal(
+        "name=\"P\"\ntechnology=\"powder\"\nbuild_mm=[9,9,9]\nlayer_mm=0.1\n"
+        "support_angle_deg=" +
+        support + "\n" + rest);
+  };
+  EXPECT_THAT(refused("90", "dialect=\"handoff\"\n"), HasSubstr("powder.layer_s"));
+  EXPECT_THAT(refused("45", "dialect=\"handoff\"\n[powder]\nlayer_s=9\n"),
+              HasSubstr("support_angle_deg must be 90"));
+  EXPECT_THAT(refused("90", "dialect=\"gcode\"\n[powder]\nlayer_s=9\n"), HasSubstr("dialect"));
+  const Profile fuse = read_profile("fuse1");
+  EXPECT_EQ(fuse.technology, Technology::kPowder);
+  EXPECT_EQ(fuse.pack.placement, Placement::kAnywhere);
+}
+
+// Cuts, swaps and foreign bytes in a real profile: it is read, or refused with file and line.
 TEST_F(ProfileTest, MutatedProfilesNeverEndInAnythingElse) {
   const std::string original = shipped_text("replicator");
   const std::string interesting = "\"'[]{}=.,#\n\r\t\\-+0e9\xff\xc3\x00n_ifu";

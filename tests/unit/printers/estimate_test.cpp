@@ -58,6 +58,27 @@ TEST(Polyjet, BoxByHand) {
   EXPECT_EQ(e.trays, 1);
 }
 
+TEST(Powder, BoxByHand) {
+  // 5 cm³ 4 mm above the floor: 28 layers, and a bed of 140 cm³
+  const Estimate e = of(fixtures::plain_powder(), {box(Vec3(5, 5, 4), Vec3(25, 30, 14))});
+  EXPECT_NEAR(e.time_s, 1000 + 28 * 10, 1e-6);
+  EXPECT_EQ(e.support_mm3, 0);
+  EXPECT_NEAR(e.model_g, 5, 1e-9);
+  EXPECT_NEAR(e.support_g, 0.5 * (5 + 135 * 0.5) - 5, 1e-9);
+}
+
+TEST(Powder, WhereEnoughIsFusedNothingIsLost) {
+  const Estimate e = of(fixtures::plain_powder(), {box(Vec3(5, 5, 1), Vec3(95, 95, 99))});
+  EXPECT_EQ(e.support_g, 0);
+}
+
+TEST(Powder, ABedIsAsWideAsItsPlate) {
+  Profile profile = fixtures::plain_powder();
+  profile.plate_mm = {{0, 0}, {100, 0}, {0, 100}};
+  const Estimate e = of(profile, {box(Vec3(5, 5, 4), Vec3(25, 30, 14))});
+  EXPECT_NEAR(e.support_g, 0.5 * (5 + 65 * 0.5) - 5, 1e-9);
+}
+
 TEST(Polyjet, SolidSphereOfTableOne) {
   const Estimate e = of(fixtures::shipped_profile("objet30"), {printed::resting_sphere(40)});
   EXPECT_NEAR(e.time_s, 22980, 2298);
