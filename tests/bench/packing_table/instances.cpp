@@ -64,6 +64,12 @@ PackProblem functional_problem(std::uint64_t instance) {
   return height_problem(functional_items(instance), {150, 110, 200}, 1);
 }
 
+PackProblem powder_problem(std::uint64_t instance) {
+  constexpr double kGap_mm = 1;
+  const Vec3 room_mm = Vec3(165, 165, 300) - Vec3::Constant(2 * kGap_mm);
+  return height_problem(mixed_items(60, instance), room_mm, kGap_mm);
+}
+
 PackProblem nested_problem() {
   std::vector<PackItem> items;
   for (int face = 0; face < kPatches; ++face)

@@ -18,6 +18,10 @@ PackProblem mixed_problem(std::uint64_t instance);
 // 60 functional parts (functional_parts.h) on 150 x 110 mm, 1 mm apart.
 PackProblem functional_problem(std::uint64_t instance);
 
+// 60 mixed parts in powder, 165 x 165 x 300 mm: 1 mm apart and from every wall, so that the packer's
+// volume is 2 mm smaller each way, and so is the density's.
+PackProblem powder_problem(std::uint64_t instance);
+
 // The six patches that the faces of a cube cut out of a shell, 50 mm in radius and 3 mm thick, on
 // 72 x 72 mm, no gap. At best they lie in one another as bowls do, nested_height_mm() high.
 PackProblem nested_problem();

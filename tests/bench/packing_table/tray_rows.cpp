@@ -215,6 +215,12 @@ std::vector<TableCase> tray_rows() {
   add_height_row({"functional", "60 functional parts, 150 × 110 mm, 1 mm gap, one thread, 30 s",
                   "density 36.5 %, 0.63 of `drop`'s height", 30, functional_problem},
                  cases);
+  add_height_row(
+      {"powder",
+       "60 mixed parts in powder, 165 × 165 × 300 mm, 1 mm to each other and to the walls, one "
+       "thread, 30 s",
+       "told", 30, powder_problem},
+      cases);
   const auto bunny_parts = [](std::uint64_t) {
     static const PackProblem kProblem = bunny_parts_problem();
     return kProblem;
