@@ -111,6 +111,37 @@ void place_between_walls(Arrangement& arrangement, const Room& room, double gap_
   arrangement.trays = static_cast<int>(barred.size());
 }
 
+// What stands side by side on several trays is stood in layers above one another, as many as the
+// room is high: powder holds them.
+void stack_trays(Arrangement& arrangement, const Room& room, double gap_mm) {
+  std::vector<double> heights(static_cast<std::size_t>(arrangement.trays), 0);
+  for (const JobPart& part : arrangement.parts) {
+    double& height = heights[static_cast<std::size_t>(part.tray) - 1];
+    height = std::max(height, bounding_box(transformed(part.surface, part.pose)).sizes().z());
+  }
+  struct Layer {
+    int tray;
+    double z_mm;
+  };
+  std::vector<Layer> layers;
+  Layer next{1, 0};
+  for (const double height : heights) {
+    if (next.z_mm + height > room.size_mm.z() + kSlack) next = {next.tray + 1, 0};
+    layers.push_back(next);
+    next.z_mm += height + gap_mm;
+  }
+  std::map<int, std::size_t> layer_of;  // by id
+  for (JobPart& part : arrangement.parts) {
+    const std::size_t layer = static_cast<std::size_t>(part.tray) - 1;
+    layer_of[part.id] = layer;
+    part.tray = layers[layer].tray;
+    part.pose.pretranslate(Vec3(0, 0, layers[layer].z_mm));
+  }
+  arrangement.trays = layers.back().tray;
+  std::stable_sort(arrangement.removal_order.begin(), arrangement.removal_order.end(),
+                   [&](int a, int b) { return layer_of.at(a) > layer_of.at(b); });
+}
+
 Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
                     const Profile& profile) {
   std::vector<Box3> boxes;
@@ -137,6 +168,7 @@ Arrangement arrange(const WholeModels& models, const std::vector<Mat3>& ways,
     arrangement.parts.push_back(std::move(part));
   }
   if (over_a_wall(arrangement, room)) place_between_walls(arrangement, room, gap_mm);
+  if (profile.technology == Technology::kPowder) stack_trays(arrangement, room, gap_mm);
   return arrangement;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "fixtures/models.h"
+#include "job/promises.h"
 #include "model/printer.h"
 #include "shape/read/soup.h"
 
@@ -75,6 +76,21 @@ TEST(InPowder, ModelsKeepTheGapToAllWalls) {
     }
   EXPECT_FALSE(
       stand_as_is({std::make_shared<const Mesh>(closed_mesh(fixtures::cube(27)))}, profile));
+}
+
+TEST(InPowder, ModelsStandInLayers) {
+  Profile profile = read_profile("objet30");
+  profile.technology = Technology::kPowder;
+  profile.build_mm = {50, 30, 46};
+  profile.pack.gap_mm = 2;
+  const WholeModels five(5, std::make_shared<const Mesh>(closed_mesh(fixtures::cube(20))));
+  const auto arrangement = stand_as_is(five, profile);
+  ASSERT_TRUE(arrangement);
+  EXPECT_EQ(arrangement->trays, 2);
+  EXPECT_FALSE(broken_promise(*arrangement, 2, whole_room(profile), Progress()));
+  EXPECT_EQ(arrangement->parts[3].tray, 1);
+  EXPECT_NEAR(arrangement->parts[3].pose.translation().z(), 24, 1e-9);
+  EXPECT_EQ(arrangement->removal_order.back(), 2);
 }
 
 TEST(SideBySide, OneAloneStandsInTheMiddle) {
