@@ -26,12 +26,11 @@ void require_openings(const WholeModels& models, const Profile& profile, const P
   std::set<const Mesh*> looked_at;  // copies share their surface
   for (const auto& model : models) {
     if (!looked_at.insert(model.get()).second) continue;
-    const std::size_t sealed = sealed_cavities(*model);
-    const std::size_t all = sealed > 0 ? sealed : pockets(*model, kOpening_mm, progress);
-    if (all > 0)
-      refuse(
-          fmt::format("Powder would stay in the model: {} of its cavities {} no opening of {:g} mm",
-                      all, all == 1 ? "has" : "have", kOpening_mm));
+    const std::size_t keeping = keeping_cavities(*model, kOpening_mm, progress);
+    if (keeping > 0)
+      refuse(fmt::format(
+          "Powder would stay in the model: {} of its cavities {} two openings of {:g} mm", keeping,
+          keeping == 1 ? "has no" : "have no", kOpening_mm));
   }
 }
 

@@ -1,4 +1,4 @@
-// Where a model holds what cannot come out of it: loose powder, above all.
+// Where a model holds what does not come out of it: loose powder, above all.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace packmerger {
 // mesh: closed, normals out of matter.
 std::size_t sealed_cavities(const Mesh& mesh);
 
-// Those, and pockets that a ball of this diameter has room in and cannot leave: every way out of
-// them is narrower, to within half a millimetre, or a little more where the model is large.
-// Throws Error{kInterrupted}.
-std::size_t pockets(const Mesh& mesh, double ball_mm, const Progress& progress);
+// Those; pockets that a ball as wide as an opening should be has room in and cannot leave; and
+// chambers that have one way out for it alone, and none that is 1.8 times as wide. To within half a
+// millimetre, or a little more where the model is large. Throws Error{kInterrupted}.
+std::size_t keeping_cavities(const Mesh& mesh, double opening_mm, const Progress& progress);
 
 }  // namespace packmerger

@@ -57,7 +57,7 @@ TEST_F(RefusedWays, WhereNoPowderComesOutIsRefused) {
   profile.pack.placement = Placement::kDrop;
   PlanOptions options = options_of(fixtures::nested_cubes(30, 20));
   options.split = options.hollow = false;
-  EXPECT_THAT(refusal(profile, options, Variant::kSolid), HasSubstr("no opening of 5 mm"));
+  EXPECT_THAT(refusal(profile, options, Variant::kSolid), HasSubstr("no two openings of 5 mm"));
 
   options = options_of(fixtures::cube(30));
   options.split = false;
