@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { columnsOf, reasonsOf } from '../../src/web/job/table';
+import { columnsOf, isInPowder, reasonsOf } from '../../src/web/job/table';
 import type { Estimates } from '../../src/web/daemon/types';
 
 const costs = (way: Record<string, number | null>): Estimates =>
@@ -11,6 +11,12 @@ test('ways that are equal are one column', () => {
   expect(titles({ as_is: 5, solid: 5, hollow: 4, packed: 4 })).toEqual(['As it stands, solid', 'Hollow, packed']);
   expect(titles({ hollow: 4, packed: 4.001 })).toEqual(['Hollow, packed']);
   expect(titles({ as_is: null, solid: null, hollow: 4, packed: 5 })).toEqual(['As it stands', 'Solid', 'Hollow', 'Packed']);
+});
+
+test('what weighs something and holds nothing up is powder', () => {
+  const holding = (support_mm3: number | null) => Object.fromEntries(Object.entries(costs({ solid: 5, packed: 4 }))
+    .map(([way, one]) => [way, { ...one, support_mm3 }])) as unknown as Estimates;
+  expect([0, 20, null].map((mm3) => isInPowder(holding(mm3)))).toEqual([true, false, false]);
 });
 
 test('why ways cannot be made is told once', () => {

@@ -54,8 +54,23 @@ std::string sum_of(const Estimate& way, double amount) {
   return std::abs(all - way.cost) < kSameCost ? money(way, amount) : "-";
 }
 
-const Cells kFigureTitles = {"time", "", "model", "support", "", "parts", "trays", "by hand"};
 const Cells kMoneyTitles = {"cost", "", "material", "machine", "hands"};
+
+// What weighs something and stands below nothing is no support: powder that cannot be used again.
+bool is_in_powder(const std::vector<Way>& ways) {
+  const auto holds = [&](bool (*is)(const Estimate&)) {
+    return std::any_of(ways.begin(), ways.end(), [&](const Way& way) {
+      return way.estimate != nullptr && is(*way.estimate);
+    });
+  };
+  return holds([](const Estimate& one) { return one.support_g > 0; }) &&
+         !holds([](const Estimate& one) { return one.support_mm3 > 0; });
+}
+
+Cells figure_titles(const std::vector<Way>& ways) {
+  return {"time", "",      "model", is_in_powder(ways) ? "lost powder" : "support",
+          "",     "parts", "trays", "by hand"};
+}
 
 Cells figures_of(const Estimate& way, const Estimate* yardstick) {
   return {spoken_time(way.time_s),
@@ -174,10 +189,10 @@ std::string comparison_table(const Comparison& comparison, const std::string& ti
                              std::string_view prepared, const std::string& taking) {
   const Estimate* yardstick = cheapest_unpacked(comparison);
   Cells names = {""};
-  std::vector<Cells> figures = {kFigureTitles};
+  const std::vector<Way> ways = ways_of(comparison);
+  std::vector<Cells> figures = {figure_titles(ways)};
   Cells paid_names = {""};
   std::vector<Cells> paid = {kMoneyTitles};
-  const std::vector<Way> ways = ways_of(comparison);
   for (const Way& way : ways) {
     names.push_back(way.name);
     figures.push_back(row_of(way, yardstick));

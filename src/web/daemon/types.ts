@@ -40,6 +40,7 @@ export interface Estimate {
   time_s: number | null;
   model_g: number | null;
   support_g: number | null;
+  support_mm3: number | null;
   cost: number | null;
   material_cost?: number | null;  // the three sums of the cost; earlier versions do not tell them
   machine_cost?: number | null;

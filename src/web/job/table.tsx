@@ -97,6 +97,12 @@ interface Props {
   take?: ((variant: Variant) => void) | undefined;  // has another way prepared; left out where that cannot be
 }
 
+// What weighs something and stands below nothing is no support: powder that cannot be used again.
+export const isInPowder = (estimates: Estimates): boolean => {
+  const held = Object.values(estimates).filter((one) => (one.support_g ?? 0) > 0);
+  return held.length > 0 && held.every((one) => one.support_mm3 === 0);
+};
+
 export function EstimateTable({ estimates, prepared, advice, take }: Props) {
   const columns = columnsOf(estimates);
   const isPrepared = ({ ways }: Column): boolean => ways.some((way) => way === prepared);
@@ -106,6 +112,7 @@ export function EstimateTable({ estimates, prepared, advice, take }: Props) {
     .reduce((best, one) => (one && (!best || (one.cost ?? 0) < (best.cost ?? 0)) ? one : best), undefined);
   const baseColumn = columns.find(({ ways }) => ways.some((way) => estimates[way] === base));
   const rows = ROWS.filter((row) => columns.some(({ one }) => one.fits && row.value(one) !== null));
+  const titleOf = ({ title }: Row): string => (title === 'Support' && isInPowder(estimates) ? 'Lost powder' : title);
   const source = Object.values(estimates).find((one) => one.source !== null)?.source ?? 'model';
   return (
     <>
@@ -131,7 +138,7 @@ export function EstimateTable({ estimates, prepared, advice, take }: Props) {
             const values = columns.flatMap(({ one }) => (one.fits ? [row.value(one) ?? Infinity] : []));
             return (
               <tr key={row.title}>
-                <th scope="row" class={row.isShare ? 'share' : ''}>{row.title}</th>
+                <th scope="row" class={row.isShare ? 'share' : ''}>{titleOf(row)}</th>
                 {columns.map((column) => (
                   <Cell key={column.title} row={row} one={column.one} base={baseColumn?.one} best={values.length > 1 ? Math.min(...values) : NaN}
                         kind={isPrepared(column) ? 'prepared' : ''} />

@@ -113,6 +113,17 @@ TEST(Table, WaysThatReadTheSameShareALine) {
   EXPECT_EQ(table.find("\npacked "), std::string::npos) << table;
 }
 
+TEST(Table, CallsLostPowderByItsName) {
+  Comparison ways;
+  ways.solid = costing(10);
+  ways.solid->support_g = 5;
+  ways.solid->support_mm3 = 0;
+  EXPECT_NE(comparison_table(ways, "x").find("lost powder"), std::string::npos);
+  ways.solid->support_mm3 = 20;
+  EXPECT_EQ(comparison_table(ways, "x").find("lost powder"), std::string::npos);
+  EXPECT_NE(comparison_table(ways, "x").find("support"), std::string::npos);
+}
+
 TEST(Table, ShowsTheThreeSumsOfMoneyAndTheWorkByHand) {
   Comparison ways;
   ways.solid = costing(10.5);
