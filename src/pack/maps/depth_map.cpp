@@ -31,7 +31,8 @@ void allocate(DepthMaps& maps) {
   maps.hangs.assign(cells(maps), 0);
 }
 
-DepthMaps empty_maps_around(const Mesh& surface, double grid) {
+// Of the size that the surface asks for, nothing allocated.
+DepthMaps frame_around(const Mesh& surface, double grid) {
   DepthMaps maps;
   for (const Vec3& point : surface.points()) maps.box.extend(point);
   const Vec3 low = maps.box.min() / grid;
@@ -40,7 +41,6 @@ DepthMaps empty_maps_around(const Mesh& surface, double grid) {
   maps.y0 = static_cast<int>(std::floor(low.y() + kCellTolerance));
   maps.width = std::max(1, static_cast<int>(std::ceil(high.x() - kCellTolerance)) - maps.x0);
   maps.height = std::max(1, static_cast<int>(std::ceil(high.y() - kCellTolerance)) - maps.y0);
-  allocate(maps);
   return maps;
 }
 
@@ -167,18 +167,39 @@ class Rasterizer {
 
   // Into `bottom`, `roof` and `hangs`.
   void enter_centres(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
-    const Vec3 normal =
-        Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
+    const Vec3 normal = normal_of(a, b, c);
     if (normal.z() == 0) return;
+    const auto hangs = [&] {
+      const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
+      return static_cast<std::uint8_t>(in_mm.z() < normal_limit_ * in_mm.norm() ? 1 : 0);
+    };
+    for_each_centre(a, b, c, normal,
+                    [&](std::size_t cell, float z) { enter_centre(cell, z, hangs); });
+  }
+
+  // Into `roof`, facets that face up only: of a closed surface the others lie below them.
+  void enter_roof(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    const Vec3 normal = normal_of(a, b, c);
+    if (normal.z() <= 0) return;
+    for_each_centre(a, b, c, normal, [&](std::size_t cell, float z) {
+      maps_.roof[cell] = std::max(maps_.roof[cell], z);
+    });
+  }
+
+ private:
+  static Vec3 normal_of(const CellPoint& a, const CellPoint& b, const CellPoint& c) {
+    return Vec3(b.x - a.x, b.y - a.y, b.z - a.z).cross(Vec3(c.x - a.x, c.y - a.y, c.z - a.z));
+  }
+
+  // enter(cell, height) for the cells whose centre lies over the triangle.
+  template <typename Enter>
+  void for_each_centre(const CellPoint& a, const CellPoint& b, const CellPoint& c,
+                       const Vec3& normal, const Enter& enter) {
     // Steep facets are steeper still after rounding, but their heights remain theirs.
     const double low = std::min({a.z, b.z, c.z});
     const double high = std::max({a.z, b.z, c.z});
     const double slope_x = -normal.x() / normal.z();
     const double slope_y = -normal.y() / normal.z();
-    const auto hangs = [&] {
-      const Vec3 in_mm(normal.x(), normal.y(), normal.z() * grid_);
-      return static_cast<std::uint8_t>(in_mm.z() < normal_limit_ * in_mm.norm() ? 1 : 0);
-    };
     const SortedTriangle<&CellPoint::y, &CellPoint::x> sorted(a, b, c);
     const int end = centres_up_to(sorted.last->y);
     for (int row = centres_up_to(sorted.first->y); row < end; ++row) {
@@ -188,12 +209,11 @@ class Rasterizer {
       const int last = centres_up_to(std::max(left, right));
       for (int column = centres_up_to(std::min(left, right)); column < last; ++column) {
         const double z = a.z + slope_x * (column + 0.5 - a.x) + slope_y * (y - a.y);
-        enter_centre(at(maps_, column, row), static_cast<float>(std::clamp(z, low, high)), hangs);
+        enter(at(maps_, column, row), static_cast<float>(std::clamp(z, low, high)));
       }
     }
   }
 
- private:
   void enter_bounds(std::size_t cell, double low, double high) {
     maps_.low[cell] = std::min(maps_.low[cell], static_cast<float>(low));
     maps_.top[cell] = std::max(maps_.top[cell], static_cast<float>(high));
@@ -245,7 +265,8 @@ class Rasterizer {
 
 template <bool kExtents>
 DepthMaps drawn(const Mesh& surface, double grid_mm, double support_angle) {
-  DepthMaps maps = empty_maps_around(surface, grid_mm);
+  DepthMaps maps = frame_around(surface, grid_mm);
+  allocate(maps);
   const std::vector<CellPoint> points = in_cells(surface.points(), grid_mm, maps);
   Rasterizer rasterizer(maps, grid_mm, support_normal_limit(support_angle));
   const auto corner = [&](int triangle, std::size_t i) -> const CellPoint& {
@@ -316,6 +337,19 @@ DepthMaps draw_sampled_maps(const Mesh& surface, double grid_mm, double support_
       maps.hangs[to] = fine.hangs[from];
     }
   return maps;
+}
+
+RoofMap draw_roof(const Mesh& surface, double grid_mm) {
+  DepthMaps maps = frame_around(surface, grid_mm);
+  maps.roof.assign(cells(maps), kNothingBelow);
+  const std::vector<CellPoint> points = in_cells(surface.points(), grid_mm, maps);
+  Rasterizer rasterizer(maps, grid_mm, 0);
+  for (const int t : triangles_over_centres(surface, points)) {
+    const auto& [a, b, c] = surface.triangles()[static_cast<std::size_t>(t)];
+    rasterizer.enter_roof(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
+                          points[static_cast<std::size_t>(c)]);
+  }
+  return {maps.x0, maps.y0, maps.width, maps.height, maps.box, std::move(maps.roof)};
 }
 
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters) {

@@ -43,6 +43,20 @@ DepthMaps draw_centre_maps(const Mesh& surface, double grid_mm, double support_a
 // quarter of a cell off the centre.
 DepthMaps draw_sampled_maps(const Mesh& surface, double grid_mm, double support_angle);
 
+// The upper envelope alone: the surface's greatest height at the centres of the cells. Arrays as
+// above.
+struct RoofMap {
+  int x0 = 0;
+  int y0 = 0;
+  int width = 0;
+  int height = 0;
+  Box3 box;                 // exact, mm
+  std::vector<float> roof;  // kNothingBelow where the line misses
+};
+
+// `roof` as draw_centre_maps() has it, in half the time: facets that face down are not drawn.
+RoofMap draw_roof(const Mesh& surface, double grid_mm);
+
 // The same item turned by quarters × 90° about z: cells map to cells.
 DepthMaps quarter_turned(const DepthMaps& maps, int quarters);
 

@@ -34,23 +34,44 @@ QuartersAndRest split_turn(double turn) {
   return {((static_cast<int>(quarters) % 4) + 4) % 4, rest};
 }
 
-struct EnvelopeSupport {
-  double below_mm3 = 0;   // under the lowest matter
-  double inside_mm3 = 0;  // between the part's own surfaces
-};
-
 // At 0 degrees V_s = (volume under the upper envelope) - (volume of matter), whatever lies inside.
-EnvelopeSupport envelope_support(const DepthMaps& maps, double volume_mm3, double cell_mm) {
-  const double lowest = maps.box.min().z();
-  double below = 0;
+// Here that part of it which lies between the part's own surfaces.
+double inside_support_mm3_of(const DepthMaps& maps, double volume_mm3, double cell_mm) {
   double between = 0;
-  for (std::size_t at = 0; at < maps.roof.size(); ++at) {
-    if (maps.roof[at] == kNothingBelow) continue;
-    below += maps.bottom[at] - lowest;
-    between += maps.roof[at] - maps.bottom[at];
+  for (std::size_t at = 0; at < maps.roof.size(); ++at)
+    if (maps.roof[at] != kNothingBelow) between += maps.roof[at] - maps.bottom[at];
+  return std::max(0.0, between * cell_mm * cell_mm - volume_mm3);
+}
+
+// Under the upper envelope of all of them, down to the lowest point.
+double volume_under_mm3(const std::vector<const RoofMap*>& members, double cell_mm) {
+  RoofMap all;
+  int x1 = members.front()->x0;
+  int y1 = members.front()->y0;
+  all.x0 = x1;
+  all.y0 = y1;
+  for (const RoofMap* member : members) {
+    all.x0 = std::min(all.x0, member->x0);
+    all.y0 = std::min(all.y0, member->y0);
+    x1 = std::max(x1, member->x0 + member->width);
+    y1 = std::max(y1, member->y0 + member->height);
+    all.box.extend(member->box);
   }
-  const double cell = cell_mm * cell_mm;
-  return {below * cell, std::max(0.0, between * cell - volume_mm3)};
+  all.width = x1 - all.x0;
+  all.roof.assign(static_cast<std::size_t>(all.width) * static_cast<std::size_t>(y1 - all.y0),
+                  kNothingBelow);
+  for (const RoofMap* member : members) {
+    auto from = member->roof.begin();
+    for (int row = 0; row < member->height; ++row) {
+      auto to = all.roof.begin() + (row + member->y0 - all.y0) * all.width + member->x0 - all.x0;
+      for (int column = 0; column < member->width; ++column, ++from, ++to)
+        *to = std::max(*to, *from);
+    }
+  }
+  double under = 0;
+  for (const float roof : all.roof)
+    if (roof != kNothingBelow) under += roof - all.box.min().z();
+  return under * cell_mm * cell_mm;
 }
 
 Mesh turned(const Mesh& surface, const Mat3& rotation) {
@@ -162,22 +183,47 @@ ItemSet PartMaker::twins(const ItemSet& items) const {
   return twins;
 }
 
+std::shared_ptr<const PartMaker::Standing> PartMaker::standing(int item, const Mat3& base) {
+  const Shape& shape = shapes_[static_cast<std::size_t>(item)];
+  const std::pair key(shape.twin, key_of(base));
+  const bool is_kept = !grid_.bounds && !problem_.edges.empty();
+  if (is_kept) {
+    const std::lock_guard lock(mutex_);
+    const auto found = standing_.find(key);
+    if (found != standing_.end()) return found->second;
+  }
+  const Mesh surface = turned(shape.surface, base);
+  auto made = std::make_shared<Standing>();
+  made->boxes = turned_boxes(surface, rotation_set_.turns);
+  if (problem_.support_angle <= 0) made->roof = draw_roof(surface, grid_.cell_mm);
+  if (!is_kept) return made;
+  const std::lock_guard lock(mutex_);
+  return standing_.emplace(key, std::move(made)).first->second;
+}
+
 std::vector<WayUp> PartMaker::ways_of(const Part& part) {
-  const std::vector<Mesh> shapes = surfaces(part.items);
   std::vector<WayUp> ways;
   const auto add = [&](const Mat3& base) {
     tick_();
-    const std::vector<Mesh> standing = turned(shapes, base);
-    const auto turn = best_turn(standing, rotation_set_.turns, problem_);
-    if (turn) ways.push_back(measured(part, standing, base, *turn));
+    std::vector<std::shared_ptr<const Standing>> members;
+    std::vector<Box3> boxes(rotation_set_.turns.size());
+    for (const int item : part.items) {
+      members.push_back(standing(item, base));
+      for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].extend(members.back()->boxes[i]);
+    }
+    const auto turn = best_turn(
+        boxes, rotation_set_.turns, [&] { return turned(surfaces(part.items), base); }, problem_);
+    if (turn) ways.push_back(measured(part, members, base, *turn));
     return turn ? ways.back().cost : std::numeric_limits<double>::infinity();
   };
   for (const Mat3& base : rotation_set_.ways_up) add(base);
   if (rotation_set_.ways_up.size() > 1) add_own_ways(part, ways, add);
   if (ways.empty()) {
-    if (const auto found = way_up_that_fits(shapes, problem_))
-      ways.push_back(
-          measured(part, turned(shapes, found->rotation), found->rotation, {0, found->size_mm}));
+    if (const auto found = way_up_that_fits(surfaces(part.items), problem_)) {
+      std::vector<std::shared_ptr<const Standing>> members;
+      for (const int item : part.items) members.push_back(standing(item, found->rotation));
+      ways.push_back(measured(part, members, found->rotation, {0, found->size_mm}));
+    }
   }
   std::stable_sort(ways.begin(), ways.end(),
                    [](const WayUp& a, const WayUp& b) { return a.cost < b.cost; });
@@ -216,26 +262,22 @@ void PartMaker::add_own_ways(const Part& part, const std::vector<WayUp>& ways,
   }
 }
 
-WayUp PartMaker::measured(const Part& part, const std::vector<Mesh>& standing, const Mat3& base,
-                          const Turn& turn) const {
+WayUp PartMaker::measured(const Part& part,
+                          const std::vector<std::shared_ptr<const Standing>>& members,
+                          const Mat3& base, const Turn& turn) const {
   WayUp way{base, turn.turn, 0, 0, 0, turn.size_mm};
   if (problem_.support_angle <= 0) {
-    std::vector<DepthMaps> members;
-    std::vector<const DepthMaps*> all;
-    for (const Mesh& surface : standing)
-      members.push_back(draw_centre_maps(surface, grid_.cell_mm, 0));
-    for (const DepthMaps& member : members) all.push_back(&member);
-    const EnvelopeSupport support =
-        envelope_support(united_maps(all), part.volume_mm3, grid_.cell_mm);
-    way.support_mm3 = support.below_mm3 + support.inside_mm3;
-    way.inside_support_mm3 = support.inside_mm3;
+    std::vector<const RoofMap*> roofs;
+    for (const auto& member : members) roofs.push_back(&member->roof);
+    way.support_mm3 = std::max(0.0, volume_under_mm3(roofs, grid_.cell_mm) - part.volume_mm3);
   } else {
+    const std::vector<Mesh> surfaces_up = turned(surfaces(part.items), base);
     Box3 box;
-    for (const Mesh& surface : standing)
+    for (const Mesh& surface : surfaces_up)
       for (const Vec3& point : surface.points()) box.extend(point);
     const double step = std::max(grid_.cell_mm, box.sizes().head<2>().maxCoeff() / kColumnsAcross);
     const ColumnSupport support =
-        column_support(standing, step, problem_.support_angle, box.min().z());
+        column_support(surfaces_up, step, problem_.support_angle, box.min().z());
     way.support_mm3 = support.below + support.inside;
     way.inside_support_mm3 = support.inside;
   }
@@ -275,10 +317,9 @@ const RotatedPart* PartMaker::rotated(const Part& part, const Mat3& base, int qu
     made->barred = mask_.barred(footprint_of(made->top), made->box);
     made->shift = Vec3(-maps.x0 * grid_.cell_mm, -maps.y0 * grid_.cell_mm, -maps.box.min().z()) -
                   rotation * centres_[static_cast<std::size_t>(part.model)];
-    made->inside_support_mm3 =
-        problem_.support_angle <= 0
-            ? envelope_support(maps, part.volume_mm3, grid_.cell_mm).inside_mm3
-            : inside_support_mm3;
+    made->inside_support_mm3 = problem_.support_angle <= 0
+                                   ? inside_support_mm3_of(maps, part.volume_mm3, grid_.cell_mm)
+                                   : inside_support_mm3;
   }
   const std::lock_guard lock(mutex_);
   return usable(rotated_.emplace(key, std::move(made)).first->second);

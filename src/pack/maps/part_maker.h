@@ -54,6 +54,10 @@ class PartMaker {
     Mesh surface;
     int twin = 0;  // the first item with the same shape about the same centre
   };
+  struct Standing {           // what an item's way up is measured by
+    std::vector<Box3> boxes;  // in each turn
+    RoofMap roof;             // at 0 degrees
+  };
 
   const RotatedPart* rotated(const Part& part, const Mat3& base, int quarters,
                              double inside_support_mm3);
@@ -64,10 +68,11 @@ class PartMaker {
   // Copies are told apart by their twins only: what was found for one serves all.
   ItemSet twins(const ItemSet& items) const;
   std::vector<WayUp> ways_of(const Part& part);
+  std::shared_ptr<const Standing> standing(int item, const Mat3& base);
   void add_own_ways(const Part& part, const std::vector<WayUp>& ways,
                     const std::function<double(const Mat3&)>& add);
-  WayUp measured(const Part& part, const std::vector<Mesh>& standing, const Mat3& base,
-                 const Turn& turn) const;
+  WayUp measured(const Part& part, const std::vector<std::shared_ptr<const Standing>>& members,
+                 const Mat3& base, const Turn& turn) const;
   std::vector<Mesh> surfaces(const ItemSet& items) const;
 
   const PackProblem& problem_;
@@ -79,6 +84,8 @@ class PartMaker {
   std::vector<Shape> shapes_;  // by item
   std::mutex mutex_;           // guards the caches
   std::map<std::pair<int, RotationKey>, std::shared_ptr<const DepthMaps>> maps_;
+  // Kept where parts may merge: a merged part is measured by its members.
+  std::map<std::pair<int, RotationKey>, std::shared_ptr<const Standing>> standing_;  // by twin
   std::map<ItemSet, std::unique_ptr<Part>> parts_;
   std::map<ItemSet, std::vector<WayUp>> ways_;                                       // by twins
   std::map<std::pair<ItemSet, RotationKey>, std::unique_ptr<RotatedPart>> rotated_;  // by twins

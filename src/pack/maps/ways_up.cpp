@@ -62,44 +62,49 @@ bool fits(const Vec3& size_mm, const Vec3& build_mm) {
   return excess(size_mm, build_mm) <= kFitTolerance_mm;
 }
 
-std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vector<double>& turns,
-                              const PackProblem& problem) {
+std::vector<Box3> turned_boxes(const Mesh& standing, const std::vector<double>& turns) {
   Box3 box;
-  Eigen::Index count = 0;
-  for (const Mesh& surface : standing) count += static_cast<Eigen::Index>(surface.points().size());
+  const auto count = static_cast<Eigen::Index>(standing.points().size());
   Eigen::ArrayXd xs(count);
   Eigen::ArrayXd ys(count);
   Eigen::Index next = 0;
-  for (const Mesh& surface : standing)
-    for (const Vec3& point : surface.points()) {
-      box.extend(point);
-      xs[next] = point.x();
-      ys[next++] = point.y();
-    }
-  const auto extent = [](const Eigen::ArrayXd& along) {
-    return along.size() > 0 ? along.maxCoeff() - along.minCoeff() : 0;
-  };
+  for (const Vec3& point : standing.points()) {
+    box.extend(point);
+    xs[next] = point.x();
+    ys[next++] = point.y();
+  }
+  std::vector<Box3> boxes(turns.size());
+  if (count == 0) return boxes;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Mat3 about_z = turn_about_z(turns[i]);
+    const Eigen::ArrayXd along_x = about_z(0, 0) * xs - about_z(1, 0) * ys;
+    const Eigen::ArrayXd along_y = about_z(1, 0) * xs + about_z(0, 0) * ys;
+    boxes[i] = Box3(Vec3(along_x.minCoeff(), along_y.minCoeff(), box.min().z()),
+                    Vec3(along_x.maxCoeff(), along_y.maxCoeff(), box.max().z()));
+  }
+  return boxes;
+}
+
+std::optional<Turn> best_turn(const std::vector<Box3>& boxes, const std::vector<double>& turns,
+                              const std::function<std::vector<Mesh>()>& standing,
+                              const PackProblem& problem) {
   Mesh whole;  // all surfaces, where a plate needs them
   const auto stands_clear = [&](double turn) {
     if (problem.plate.is_whole()) return true;
-    if (whole.empty()) whole = united(standing);
+    if (whole.empty()) whole = united(standing());
     return spot_on(problem, transformed(whole, Pose(turn_about_z(turn)))).has_value();
   };
   // Support hardly depends on the turn; the box does, so the cheapest box decides.
   std::optional<Turn> best;
   double least = 0;
-  for (const double turn : turns) {
-    const Mat3 about_z = turn_about_z(turn);
-    const double cosine = about_z(0, 0);
-    const double sine = about_z(1, 0);
-    const Vec3 size(extent(cosine * xs - sine * ys), extent(sine * xs + cosine * ys),
-                    box.sizes().z());
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Vec3 size = boxes[i].isEmpty() ? Vec3(0, 0, 0) : Vec3(boxes[i].sizes());
     if (!fits(size, problem.build_mm)) continue;
     const double cost = problem.cost.evaluate({size, 0, 0, 1});
     if (best && cost >= least - 1e-9 * std::abs(least)) continue;
-    if (!stands_clear(turn)) continue;
+    if (!stands_clear(turns[i])) continue;
     least = cost;
-    best = Turn{turn, size};
+    best = Turn{turns[i], size};
   }
   return best;
 }

@@ -1,6 +1,7 @@
 // Which ways up a part can stand, and turned how.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -24,10 +25,14 @@ struct Turn {
   Vec3 size_mm = Vec3::Zero();
 };
 
-// The turn about the vertical in which the surfaces together, standing as they are given, fit the
-// build volume and the plate at the least cost of their box; of equal ones the first. Empty where
-// none fits.
-std::optional<Turn> best_turn(const std::vector<Mesh>& standing, const std::vector<double>& turns,
+// The box of a surface that stands as it is given, in each of some turns about the vertical.
+std::vector<Box3> turned_boxes(const Mesh& standing, const std::vector<double>& turns);
+
+// The turn in which what stands fits the build volume and the plate at the least cost of its box;
+// of equal ones the first. Empty where none fits. boxes: of each turn; standing: tells the
+// surfaces, not turned, where a plate asks for more than boxes.
+std::optional<Turn> best_turn(const std::vector<Box3>& boxes, const std::vector<double>& turns,
+                              const std::function<std::vector<Mesh>()>& standing,
                               const PackProblem& problem);
 
 struct FittingWay {

@@ -253,6 +253,16 @@ RC_GTEST_PROP(DepthMaps, CentresAreTheSameAlone, (std::uint64_t seed)) {
   RC_ASSERT(alone.hangs == whole.hangs);
 }
 
+RC_GTEST_PROP(DepthMaps, RoofsAreTheSameAlone, (std::uint64_t seed)) {
+  Random random(seed);
+  const double grid = 0.5 + random.unit();
+  const Mesh surface = shapes::turned(any_shape(random), shapes::any_rotation(random));
+  const DepthMaps whole = draw_centre_maps(surface, grid, 0);
+  const RoofMap alone = draw_roof(surface, grid);
+  RC_ASSERT(alone.x0 == whole.x0 && alone.y0 == whole.y0 && alone.width == whole.width);
+  RC_ASSERT(alone.roof == whole.roof);
+}
+
 // OSMesa's heights at one ray and at its eight neighbours: what its sampling, which is exact to a
 // fraction of a step sideways, leaves open.
 struct Neighbourhood {

@@ -124,6 +124,28 @@ TEST(PartMaker, CopiesShareWhatIsDrawn) {
   EXPECT_NE(first_rotation(0), first_rotation(2));
 }
 
+TEST(PartMaker, AMergedPartStandsAsItsMembersTogether) {
+  // Two halves of a block, and beside them the block as one item; at 0 degrees and at 45.
+  const Mesh half = shapes::box(Vec3(12, 8, 6));
+  const Mesh other = transformed(half, Pose(Eigen::Translation3d(0, 8, 0)));
+  for (const double angle : {0.0, 0.8}) {
+    PackProblem halves = shapes::problem_of({half, other}, Vec3(60, 60, 60));
+    for (PackItem& item : halves.items) item.model = 0;
+    halves.edges = {{0, 1, 72}};
+    halves.support_angle = angle;
+    PackProblem whole = halves;
+    whole.items = {PackItem{shapes::box(Vec3(12, 16, 6)), 12 * 16 * 6, 0}};
+    whole.edges.clear();
+    PartMaker of_halves(halves, {0.4, 1.0 / 64, 1, false}, [] {});
+    PartMaker of_whole(whole, {0.4, 1.0 / 64, 1, false}, [] {});
+    const WayUp merged = of_halves.make({0, 1})->ways.front();
+    const WayUp single = of_whole.make({0})->ways.front();
+    EXPECT_LT((merged.size_mm - single.size_mm).norm(), 1e-6);
+    EXPECT_NEAR(merged.support_mm3, single.support_mm3, 0.02 * 12 * 16 * 6);
+    EXPECT_NEAR(merged.cost, single.cost, 1e-2 * single.cost);
+  }
+}
+
 TEST(Search, TellsTheCostOfEachBetterLayout) {
   PackProblem problem = shapes::problem_of(
       {shapes::cup(9, 12, 2), shapes::l_shape(18, 4, 10), shapes::bowl(10, 2),
