@@ -11,10 +11,10 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
-#include "pack/anywhere/rearrange.h"
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/settle.h"
 #include "pack/free/free_search.h"
+#include "pack/free/search_by_cost.h"
 #include "pack/maps/ways_up.h"
 #include "pack/search/refine.h"
 #include "pack/search/search.h"
@@ -227,15 +227,11 @@ bool keeps_off_walls(const Packing& packing, const PackProblem& problem) {
   });
 }
 
-// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes. Where
-// other things than height count, parts are put back one by one; that begins with the tray before
-// it settled: columns of bounds don't see how parts closer than that come apart.
-Packing put_under(const PackProblem& problem, const Packing& dropped, Packing settled,
-                  PartMaker& maker, Pace& pace) {
-  std::optional<Packing> better =
-      height_alone_counts(problem)
-          ? searched_freely(problem, settled, pace)
-          : rearranged(problem, dropped, finest_cell_mm(problem), maker, pace);
+// With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
+Packing put_under(const PackProblem& problem, Packing settled, PartMaker& maker, Pace& pace) {
+  std::optional<Packing> better = height_alone_counts(problem)
+                                      ? searched_freely(problem, settled, pace)
+                                      : searched_by_cost(problem, settled, maker, pace);
   if (!better) return settled;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);
   measure(problem, *better);
@@ -325,8 +321,7 @@ Packing pack(const PackProblem& problem, const Progress& progress) {
       best_of(packings, problem.most_parts > 0 ? static_cast<std::size_t>(problem.most_parts)
                                                : problem.items.size());
   Packing best = with_gaps_kept(ways[chosen], searching.spec.grid, packings[chosen], problem, pace);
-  if (problem.anywhere)
-    best = put_under(problem, packings[chosen], std::move(best), searching.maker, pace);
+  if (problem.anywhere) best = put_under(problem, std::move(best), searching.maker, pace);
   progress.report("packing", 1);
   return best;
 }

@@ -178,7 +178,7 @@ void add_pack(PackSettings& s, std::vector<Key>& keys) {
         "the height."},
        {"placement", choice(s.placement, {"drop", "anywhere"}), "",
         "How parts come to their places: dropped from above only, or afterwards also put into "
-        "cavities and under overhangs, which takes minutes where parts are large or many."},
+        "cavities and under overhangs, which takes some seconds more."},
        {"weight", NumberKey{&s.weight, from_to(0, 1)}, "", "w of the paper's objective."},
        {"tabu_memory", IntegerKey{&s.tabu_memory, from_to(0, 1000)}, "rounds",
         "How long a part that was moved is left alone."},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -13,15 +14,23 @@
 namespace packmerger {
 namespace {
 
-constexpr double kStep_mm = 0.5;
+// Searches for a path, one after the other: what comes out easily is soon found, wide steps get
+// through large cavities, and at last many places are looked at.
+struct Flood {
+  double step_mm;
+  std::size_t most_places;
+};
+constexpr std::array<Flood, 3> kFloods{{{0.5, 300}, {2, 300}, {0.5, 1500}}};
+constexpr double kLook_mm = 0.25;                 // between two looks along a step
 constexpr double kRoom_mm = 1.2 * kLeastRoom_mm;  // at the places that are looked at
-constexpr std::array<std::size_t, 2> kMostPlaces{300, 1500};
 constexpr std::size_t kPlacesOfLift = 40;  // between two looks whether it can be lifted from here
 constexpr double kInside_mm = 1e-6;        // rounding of what stands at the edge
 
 using Lattice = std::array<int, 3>;
 
-Vec3 moved_mm(const Lattice& at) { return kStep_mm * Vec3(at[0], at[1], at[2]); }
+Vec3 moved_mm(const Lattice& at, const Flood& flood) {
+  return flood.step_mm * Vec3(at[0], at[1], at[2]);
+}
 
 class Dismantler {
  public:
@@ -85,9 +94,9 @@ class Dismantler {
   }
 
   bool lead_one_out() {
-    for (const std::size_t most : kMostPlaces)
+    for (const Flood& flood : kFloods)
       for (const int part : there_) {
-        auto path = path_of(part, most);
+        auto path = path_of(part, flood);
         if (!path) continue;
         plan_.paths[static_cast<std::size_t>(part)] = std::move(*path);
         take_out(part);
@@ -120,30 +129,36 @@ class Dismantler {
     });
   }
 
+  bool is_free_between(int part, const Vec3& from, const Vec3& to) const {
+    const int looks = static_cast<int>(std::lround((to - from).norm() / kLook_mm));
+    for (int look = 1; look <= looks; ++look)
+      if (!is_free(part, from + (to - from) * (static_cast<double>(look) / looks))) return false;
+    return true;
+  }
+
   // Best first: the highest place, of several the one that was found first.
-  std::optional<std::vector<Vec3>> path_of(int part, std::size_t most_places) {
+  std::optional<std::vector<Vec3>> path_of(int part, const Flood& flood) {
     std::vector<Place> places{{}};
     std::set<Lattice> seen{Lattice{}};
     using Open = std::pair<int, int>;  // height, and less the index of the place
     std::priority_queue<Open> open;
     open.push({0, 0});
     int highest = 0;
-    for (std::size_t looked = 1; !open.empty() && looked <= most_places; ++looked) {
+    for (std::size_t looked = 1; !open.empty() && looked <= flood.most_places; ++looked) {
       progress_.check();
       const int index = -open.top().second;
       open.pop();
       const Lattice at = places[static_cast<std::size_t>(index)].at;
       if (at[2] > highest || looked % kPlacesOfLift == 0) {
         highest = std::max(highest, at[2]);
-        if (comes_off(part, moved_mm(at))) return swept(part, places, index);
+        if (comes_off(part, moved_mm(at, flood))) return swept(part, flood, places, index);
       }
       for (std::size_t axis = 0; axis < 3; ++axis)
         for (const int sign : {1, -1}) {
           Lattice next = at;
           next[axis] += sign;
           if (!seen.insert(next).second) continue;
-          const Vec3 end = moved_mm(next);
-          if (!is_free(part, (moved_mm(at) + end) / 2) || !is_free(part, end)) continue;
+          if (!is_free_between(part, moved_mm(at, flood), moved_mm(next, flood))) continue;
           open.push({next[2], -static_cast<int>(places.size())});
           places.push_back({next, index});
         }
@@ -152,13 +167,13 @@ class Dismantler {
   }
 
   // The steps to a place, where nothing is met between the places that were looked at either.
-  std::optional<std::vector<Vec3>> swept(int part, const std::vector<Place>& places,
-                                         int end) const {
+  std::optional<std::vector<Vec3>> swept(int part, const Flood& flood,
+                                         const std::vector<Place>& places, int end) const {
     std::vector<Vec3> steps;
     for (int at = end; places[static_cast<std::size_t>(at)].parent >= 0;) {
       const Place& here = places[static_cast<std::size_t>(at)];
-      const Vec3 step =
-          moved_mm(here.at) - moved_mm(places[static_cast<std::size_t>(here.parent)].at);
+      const Vec3 step = moved_mm(here.at, flood) -
+                        moved_mm(places[static_cast<std::size_t>(here.parent)].at, flood);
       if (!steps.empty() && steps.back().normalized().isApprox(step.normalized()))
         steps.back() += step;
       else

@@ -32,28 +32,36 @@ void keep_inside(PlacedPart& part, const PackProblem& problem) {
   }
 }
 
+TrayMeasure measured(const PackProblem& problem, const std::vector<Mesh>& placed,
+                     double material_mm3) {
+  TrayMeasure figures;
+  Box3 box;
+  for (const Mesh& surface : placed) box.extend(bounding_box(surface));
+  figures.size_mm = Vec3(box.sizes().x(), box.sizes().y(), box.max().z());
+  const ColumnSupport support =
+      column_support(placed, problem.grid_mm / 2, problem.support_angle, 0);
+  figures.support_mm3 = support.below + support.inside;
+  figures.material_mm3 = material_mm3;
+  figures.parts = static_cast<int>(placed.size());
+  return figures;
+}
+
 void measure(const PackProblem& problem, Packing& packing) {
   int trays = 0;
   for (const PlacedPart& part : packing.parts) trays = std::max(trays, part.tray + 1);
-  packing.trays.assign(static_cast<std::size_t>(trays), {});
+  packing.trays.clear();
   packing.cost = 0;
   for (int tray = 0; tray < trays; ++tray) {
-    TrayMeasure& figures = packing.trays[static_cast<std::size_t>(tray)];
-    std::vector<Mesh> surfaces;
-    Box3 box;
+    std::vector<Mesh> placed;
+    double material_mm3 = 0;
     for (const PlacedPart& part : packing.parts) {
       if (part.tray != tray) continue;
-      surfaces.push_back(placed_mesh(problem, part));
-      for (const Vec3& point : surfaces.back().points()) box.extend(point);
+      placed.push_back(placed_mesh(problem, part));
       for (const int item : part.items)
-        figures.material_mm3 += problem.items[static_cast<std::size_t>(item)].volume_mm3;
-      ++figures.parts;
+        material_mm3 += problem.items[static_cast<std::size_t>(item)].volume_mm3;
     }
-    figures.size_mm = Vec3(box.sizes().x(), box.sizes().y(), box.max().z());
-    const ColumnSupport support =
-        column_support(surfaces, problem.grid_mm / 2, problem.support_angle, 0);
-    figures.support_mm3 = support.below + support.inside;
-    packing.cost += problem.cost.evaluate(figures);
+    packing.trays.push_back(measured(problem, placed, material_mm3));
+    packing.cost += problem.cost.evaluate(packing.trays.back());
   }
 }
 

@@ -14,6 +14,10 @@ Mesh placed_mesh(const PackProblem& problem, const PlacedPart& part);
 // Moves a part back into the build volume: rounding of poses may push it out by a hair.
 void keep_inside(PlacedPart& part, const PackProblem& problem);
 
+// A tray's figures; placed: the surfaces of its parts where they stand.
+TrayMeasure measured(const PackProblem& problem, const std::vector<Mesh>& placed,
+                     double material_mm3);
+
 // Enters the figures of every tray, and the cost that follows from them.
 void measure(const PackProblem& problem, Packing& packing);
 

@@ -8,14 +8,14 @@
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/exact_removal.h"
 #include "pack/free/limit_search.h"
+#include "pack/free/tray_shapes.h"
 #include "pack/maps/rotations.h"
 #include "pack/separate/compression.h"
 
 namespace packmerger {
 namespace {
 
-constexpr double kReach_mm = 2.5;  // of the distances, beyond what parts keep apart
-constexpr double kEarly = 0.2;     // of the time: only what is much lower is made exact
+constexpr double kEarly = 0.2;  // of the time: only what is much lower is made exact
 constexpr double kMuchLower_mm = 1;
 constexpr double kSearchShare = 0.6;            // of the time, before the compression
 constexpr std::size_t kRoundsOfPatience = 400;  // for each round of the height field's search
@@ -30,33 +30,6 @@ constexpr double kShake_mm = 0.3;             // of what jammed
 constexpr std::size_t kMostStuckTakenOut = 2;
 constexpr int kMostStuckLayouts = 10;     // one after the other: what is low there has no way out
 constexpr int kCompressionPatience = 16;  // failures one after the other
-
-// Meshes that are the same to the last bit, as copies are, share a shape.
-std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
-                                                    const std::vector<PlacedPart>& parts) {
-  std::vector<Mesh> meshes;
-  std::vector<std::size_t> first_of(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    meshes.push_back(part_mesh(problem, parts[i]));
-    first_of[i] = i;
-    for (std::size_t j = 0; j < i && first_of[i] == i; ++j)
-      if (meshes[j].points() == meshes[i].points() &&
-          meshes[j].triangles() == meshes[i].triangles())
-        first_of[i] = j;
-  }
-  std::vector<std::shared_ptr<const Shape>> shapes(parts.size());
-  parallel_tasks(parts.size(), [&](std::size_t i) {
-    if (first_of[i] == i)
-      shapes[i] = std::make_shared<const Shape>(
-          meshes[i], std::max(problem.gap_mm, kLeastApart_mm) + kReach_mm);
-  });
-  for (std::size_t i = 0; i < parts.size(); ++i) shapes[i] = shapes[first_of[i]];
-  return shapes;
-}
-
-Pose own_frame(const Pose& pose, const Shape& shape) {
-  return pose * Eigen::Translation3d(shape.centre);
-}
 
 std::vector<Mat3> right_angles() {
   const RotationSet set = rotation_set(radians(90));
@@ -212,14 +185,6 @@ class FreeSearch {
   std::vector<Pose> poses_;  // the lowest that can be taken apart; empty: the start
   ExactDisassembly plan_;    // of these
 };
-
-// Down to the plate.
-void let_down(std::vector<Pose>& poses, const std::vector<std::shared_ptr<const Shape>>& shapes) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    lowest = std::min(lowest, shapes[i]->surface.box(poses[i]).min().z());
-  for (Pose& pose : poses) pose.translation().z() -= lowest;
-}
 
 }  // namespace
 

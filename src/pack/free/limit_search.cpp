@@ -6,14 +6,11 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "pack/free/lattice.h"
 
 namespace packmerger {
 namespace {
 
-constexpr double kUnits = 62;        // of the limit
-constexpr double kCellsAcross = 45;  // a part, on average
-constexpr double kLeastCell_mm = 0.4;
-constexpr double kMostCells = 40000;    // of the base
 constexpr double kLeastShrink = 0.005;  // of the height, to the next limit
 constexpr double kMostShrink = 0.03;
 constexpr std::size_t kFewRounds = 100;  // after which the limit falls further than the last time
@@ -33,39 +30,6 @@ constexpr double kMostWeight = 50;
 constexpr double kAboutSame = 1 + 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double cell_for(const FreeParts& parts, const Vec2& base_mm) {
-  double across = 0;
-  for (const Shape* shape : parts.shapes) across += bounding_box(shape->mesh).sizes().maxCoeff();
-  across /= static_cast<double>(parts.shapes.size());
-  return std::max({kLeastCell_mm, across / kCellsAcross, std::sqrt(base_mm.prod() / kMostCells)});
-}
-
-BitGrid grid_for(const FreeParts& parts, const Vec2& base_mm, double apart_mm, double limit_mm) {
-  BitGrid grid;
-  grid.cell_mm = cell_for(parts, base_mm);
-  grid.unit_mm = limit_mm / kUnits;
-  const auto cells = [&](double length_mm) {
-    return std::max(1, static_cast<int>(std::floor((length_mm + apart_mm) / grid.cell_mm + 1e-6)));
-  };
-  grid.columns = cells(base_mm.x());
-  grid.rows = cells(base_mm.y());
-  return grid;
-}
-
-// Walls reach half of apart_mm less far than they stand: parts are grown by so much, but may touch
-// them.
-HeightBits tray_with_walls(const BitGrid& grid, const Plate& plate, double apart_mm) {
-  HeightBits tray(grid);
-  if (plate.is_whole()) return tray;
-  const double least_mm = kMatterReach * grid.cell_mm - apart_mm / 2;
-  for (int y = 0; y < grid.rows; ++y)
-    for (int x = 0; x < grid.columns; ++x) {
-      const Vec2 centre = grid.cell_mm * Vec2(x + 0.5, y + 0.5) - Vec2::Constant(apart_mm / 2);
-      if (plate.nearest_wall(centre).clearance_mm <= least_mm) tray.bar(x, y);
-    }
-  return tray;
-}
-
 }  // namespace
 
 LimitSearch::LimitSearch(FreeParts parts, const Vec2& base_mm, const Plate& plate, double apart_mm,
@@ -74,7 +38,7 @@ LimitSearch::LimitSearch(FreeParts parts, const Vec2& base_mm, const Plate& plat
       base_mm_(base_mm),
       apart_mm_(apart_mm),
       random_(seed),
-      grid_(grid_for(parts_, base_mm, apart_mm, start_height_mm + apart_mm)),
+      grid_(lattice_for(parts_.shapes, base_mm, apart_mm, start_height_mm + apart_mm)),
       bare_(tray_with_walls(grid_, plate, apart_mm)),
       tray_(bare_),
       limit_mm_(start_height_mm + apart_mm),
@@ -339,7 +303,7 @@ void LimitSearch::lower_limit() {
   if (height < kDrawAgain * drawn_for_mm_) {
     drawn_for_mm_ = height;
     const double old_unit_mm = grid_.unit_mm;
-    grid_.unit_mm = height / kUnits;
+    grid_.unit_mm = lattice_for(parts_.shapes, base_mm_, apart_mm_, height).unit_mm;
     draw();
     put_nearest(std::vector<Put>(puts_), old_unit_mm);
     return;

@@ -36,7 +36,7 @@ bool covers(const std::array<Vec2, 3>& corner, const Vec2& p) {
   return true;
 }
 
-void add_crossings(const std::array<Vec3, 3>& corner, double step, double normal_limit,
+void add_crossings(const std::array<Vec3, 3>& corner, double step, double normal_limit, int surface,
                    std::vector<Crossing>& crossings) {
   const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   if (normal.z() == 0) return;
@@ -51,7 +51,8 @@ void add_crossings(const std::array<Vec3, 3>& corner, double step, double normal
       if (!covers(flat, p)) continue;
       const Vec2 away = p - corner[0].head<2>();
       const double z = corner[0].z() - (normal.x() * away.x() + normal.y() * away.y()) / normal.z();
-      crossings.push_back({j, i, z, normal.z() < 0, needs_support});
+      crossings.push_back(
+          {j, i, z, normal.z() < 0, needs_support, surface, -normal.head<2>() / normal.z()});
     }
 }
 
@@ -65,12 +66,12 @@ std::vector<Crossing> sorted_crossings(const std::vector<Mesh>& surfaces, double
                                        double support_angle) {
   const double limit = support_normal_limit(support_angle);
   std::vector<Crossing> crossings;
-  for (const Mesh& surface : surfaces)
-    for (const auto& [a, b, c] : surface.triangles())
-      add_crossings({surface.points()[static_cast<std::size_t>(a)],
-                     surface.points()[static_cast<std::size_t>(b)],
-                     surface.points()[static_cast<std::size_t>(c)]},
-                    step_mm, limit, crossings);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    for (const auto& [a, b, c] : surfaces[i].triangles())
+      add_crossings({surfaces[i].points()[static_cast<std::size_t>(a)],
+                     surfaces[i].points()[static_cast<std::size_t>(b)],
+                     surfaces[i].points()[static_cast<std::size_t>(c)]},
+                    step_mm, limit, static_cast<int>(i), crossings);
   // Of two crossings at one height the way out comes first: touching matter leaves no void.
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return std::tie(a.row, a.column, a.z, a.enters) < std::tie(b.row, b.column, b.z, b.enters);
@@ -78,25 +79,30 @@ std::vector<Crossing> sorted_crossings(const std::vector<Mesh>& surfaces, double
   return crossings;
 }
 
-ColumnSupport column_support(const std::vector<Mesh>& surfaces, double step_mm,
-                             double support_angle, double plate_mm) {
-  const std::vector<Crossing> crossings = sorted_crossings(surfaces, step_mm, support_angle);
-  ColumnSupport lengths;
-  for (std::size_t i = 0; i < crossings.size();) {
-    const int row = crossings[i].row;
-    const int column = crossings[i].column;
-    double top = plate_mm;
-    bool lowest = true;
+void for_each_void(const std::vector<Crossing>& sorted, double plate_mm, const OnVoid& on_void) {
+  for (std::size_t i = 0; i < sorted.size();) {
+    const int row = sorted[i].row;
+    const int column = sorted[i].column;
+    const Crossing* floor = nullptr;
     int depth = 0;
-    for (; i < crossings.size() && crossings[i].row == row && crossings[i].column == column; ++i) {
-      const Crossing& crossing = crossings[i];
-      if (crossing.enters && depth == 0 && crossing.needs_support)
-        (lowest ? lengths.below : lengths.inside) += std::max(0.0, crossing.z - top);
+    for (; i < sorted.size() && sorted[i].row == row && sorted[i].column == column; ++i) {
+      const Crossing& crossing = sorted[i];
+      const double height_mm = crossing.z - (floor != nullptr ? floor->z : plate_mm);
+      if (crossing.enters && depth == 0 && crossing.needs_support && height_mm > 0)
+        on_void(floor, crossing, height_mm);
       depth += crossing.enters ? 1 : -1;
-      top = crossing.z;
-      lowest = false;
+      floor = &crossing;
     }
   }
+}
+
+ColumnSupport column_support(const std::vector<Mesh>& surfaces, double step_mm,
+                             double support_angle, double plate_mm) {
+  ColumnSupport lengths;
+  for_each_void(sorted_crossings(surfaces, step_mm, support_angle), plate_mm,
+                [&](const Crossing* floor, const Crossing&, double height_mm) {
+                  (floor == nullptr ? lengths.below : lengths.inside) += height_mm;
+                });
   const double cell = step_mm * step_mm;
   return {lengths.below * cell, lengths.inside * cell};
 }

@@ -2,6 +2,7 @@
 // the exact triangles. It shares nothing with the depth maps, so that one can check the other.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "model/mesh.h"
@@ -28,12 +29,19 @@ struct Crossing {
   double z = 0;                // mm
   bool enters = false;         // going up, into matter
   bool needs_support = false;  // of the facet
+  int surface = 0;             // index of the one that the facet belongs to
+  Vec2 slope = Vec2::Zero();   // of the facet: dz/dx, dz/dy
 };
 
 // All of them for closed surfaces, by row, column and height; of two at one height the way out of
 // matter comes first. As above, but surfaces that touch along facets may be given.
 std::vector<Crossing> sorted_crossings(const std::vector<Mesh>& surfaces, double step_mm,
                                        double support_angle);
+
+// Told of every empty length below a facet that needs support: what lies below, nullptr for the
+// plate, and the facet.
+using OnVoid = std::function<void(const Crossing* floor, const Crossing& roof, double height_mm)>;
+void for_each_void(const std::vector<Crossing>& sorted, double plate_mm, const OnVoid& on_void);
 
 // The z component of a facet's unit normal below which it needs support.
 double support_normal_limit(double support_angle);

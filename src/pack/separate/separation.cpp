@@ -1,28 +1,21 @@
 #include "pack/separate/separation.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
-#include "pack/separate/quasi_newton.h"
+#include "pack/separate/descent.h"
 
 namespace packmerger {
 namespace {
 
-constexpr double kMargin_mm = 0.02;     // more than is asked for: the samples see too little
 constexpr double kNearly_mm = 0.03;     // what may be lacking at the end of a minimisation
 constexpr double kStillNear_mm = 0.07;  // of a later one, that is worth another exact look
 constexpr int kExactLooks = 12;
 constexpr double kWidenBy_mm = 0.03;  // at least
 constexpr double kMostWidened_mm = 0.4;
-constexpr double kLongestStep_mm = 1;
-constexpr double kFirstStep = 0.01;  // of the gradient
-constexpr int kHalvings = 6;
-constexpr double kShorter = 0.4;
-constexpr double kSufficient = 1e-4;  // of the decrease that the slope promises (Armijo)
-constexpr int kStepsOfLook = 25;      // after so many, one that gains too little is given up
+constexpr int kStepsOfLook = 25;  // after so many, one that gains too little is given up
 constexpr double kWorthGoingOn = 0.9;
-constexpr int kFreshStarts = 3;
 constexpr double kTold_mm = 0.1;  // beyond what is asked for
 
 }  // namespace
@@ -53,45 +46,22 @@ bool Separation::separate(std::vector<Pose>& poses, double height_mm, int most_s
 // Returns what is lacking most.
 double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const Rooms& rooms,
                             int most_steps) const {
-  const std::vector<Pose> from = poses;
-  Eigen::VectorXd at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * poses.size()));
-  Overlap here = overlap(shapes_, poses, box_mm, rooms, plate_);
-  QuasiNewton memory;
-  int fresh_starts = 0;
-  double looked_at = here.energy;
-  for (int step = 1; step <= most_steps && here.deepest_mm > kNearly_mm && !is_over_(); ++step) {
-    Eigen::VectorXd direction = memory.direction(here.gradient, kFirstStep);
-    if (here.gradient.dot(direction) >= 0) {
-      memory.forget();
-      direction = -kFirstStep * here.gradient;
-    }
-    const double longest = direction.cwiseAbs().maxCoeff();
-    if (!std::isfinite(longest)) break;
-    if (longest > kLongestStep_mm) direction *= kLongestStep_mm / longest;
-    const double slope = here.gradient.dot(direction);
-    bool is_lower = false;
-    double length = 1;
-    for (int halving = 0; halving < kHalvings && !is_lower; ++halving, length *= kShorter) {
-      const Eigen::VectorXd next_at = at + length * direction;
-      std::vector<Pose> next_poses = moved(shapes_, from, next_at);
-      Overlap next = overlap(shapes_, next_poses, box_mm, rooms, plate_);
-      if (next.energy > here.energy + kSufficient * length * slope) continue;
-      is_lower = true;
-      memory.learn(next_at - at, next.gradient - here.gradient);
-      at = next_at;
-      poses = std::move(next_poses);
-      here = std::move(next);
-    }
-    if (!is_lower) {
-      if (memory.knows_nothing() || ++fresh_starts > kFreshStarts) break;
-      memory.forget();
-    }
-    if (step % kStepsOfLook == 0) {
-      if (here.energy > kWorthGoingOn * looked_at && here.deepest_mm > 3 * kNearly_mm) break;
-      looked_at = here.energy;
-    }
-  }
-  return here.deepest_mm;
+  double looked_at = std::numeric_limits<double>::infinity();
+  return descend(
+             shapes_, poses,
+             [&](const std::vector<Pose>& at, const Eigen::VectorXd&) {
+               return overlap(shapes_, at, box_mm, rooms, plate_);
+             },
+             {},
+             [&](int steps, const Overlap& here) {
+               if (steps % kStepsOfLook == 0) {
+                 if (here.energy > kWorthGoingOn * looked_at && here.deepest_mm > 3 * kNearly_mm)
+                   return false;
+                 looked_at = here.energy;
+               }
+               return steps < most_steps && here.deepest_mm > kNearly_mm && !is_over_();
+             })
+      .deepest_mm;
 }
 
 // Whether anything is too close to another part or to a wall.

@@ -13,6 +13,8 @@ namespace packmerger {
 // How close parts may come where the gap is less: at 0 a touch is not told from a cut, and along an
 // escape path parts keep 0.02 mm.
 inline constexpr double kLeastApart_mm = 0.025;
+// What is asked for beyond what parts are to keep: the samples see too little.
+inline constexpr double kMargin_mm = 0.02;
 
 class Separation {
  public:
