@@ -219,9 +219,10 @@ Packing with_gaps_kept(const std::function<Packing(Finisher&)>& finish, const Gr
 // it settled: columns of bounds don't see how parts closer than that come apart.
 Packing put_under(const PackProblem& problem, const Packing& dropped, Packing settled,
                   PartMaker& maker, Pace& pace) {
+  Effort effort;
   std::optional<Packing> better =
       height_alone_counts(problem)
-          ? searched_freely(problem, settled, pace)
+          ? searched_freely(problem, settled, pace, effort)
           : rearranged(problem, dropped, finest_cell_mm(problem), maker, pace);
   if (!better) return settled;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);

@@ -25,9 +25,9 @@ constexpr int kVectors = kPositions / kLanes;
 constexpr std::size_t kRunsOfLook = 8;  // between two looks whether any height is free
 
 // The heights that are taken at eight positions, those that were from the start among them. False
-// where that are all.
+// where that are all. looked: how many of the part's runs that took.
 HWY_INLINE bool take(const HeightBits& tray, const BitPart& part, std::ptrdiff_t base,
-                     std::array<std::uint64_t, kPositions>& taken) {
+                     std::array<std::uint64_t, kPositions>& taken, std::size_t& looked) {
   std::array<const std::uint64_t*, HeightBits::kPlanes> planes{};
   for (int k = 0; k < HeightBits::kPlanes; ++k)
     planes[static_cast<std::size_t>(k)] = tray.plane(k) + base;
@@ -50,6 +50,7 @@ HWY_INLINE bool take(const HeightBits& tray, const BitPart& part, std::ptrdiff_t
     }
     Words least = heights[0];
     for (int v = 1; v < kVectors; ++v) least = hn::And(least, heights[v]);
+    looked = next;
     if (hn::AllTrue(kWords, hn::Eq(least, all))) return false;
   }
   for (int v = 0; v < kVectors; ++v) hn::StoreU(heights[v], kWords, taken.data() + v * kLanes);
@@ -64,6 +65,7 @@ bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating&
   const int columns = tray.columns() - part.width + 1;
   const int rows = tray.rows() - part.depth + 1;
   bool found = false;
+  std::size_t looked = 0;
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; x += kPositions) {
       const double aside = part.height_mm + rating.malus_mm + rating.per_row_mm * y;
@@ -79,14 +81,17 @@ bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating&
       taken.fill(above);
       for (int k = columns - x; k < kPositions; ++k)
         taken[static_cast<std::size_t>(k)] = ~std::uint64_t{0};
-      if (!take(tray, part, y * tray.stride() + x, taken)) continue;
+      const bool is_free = take(tray, part, y * tray.stride() + x, taken, looked);
+      best.looked += looked;
+      if (!is_free) continue;
       for (int k = 0; k < kPositions; ++k) {
         const std::uint64_t free = ~taken[static_cast<std::size_t>(k)];
         if (free == 0) continue;
         const int z = std::countr_zero(free);
         const double rated = aside + z * rating.unit_mm + rating.per_column_mm * (x + k);
         if (rated >= best.rating_mm) continue;
-        best = {{x + k, y, z}, rated};
+        best.place = {x + k, y, z};
+        best.rating_mm = rated;
         found = true;
       }
     }

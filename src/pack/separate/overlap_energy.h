@@ -2,6 +2,7 @@
 // of what each sample of a surface lacks of the room it should have.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "pack/separate/shape.h"
@@ -33,6 +34,7 @@ struct Overlap {
   double energy = 0;         // mm²
   double deepest_mm = 0;     // what a sample lacks most
   Eigen::VectorXd gradient;  // six a part: turn (mm at its radius), then translation
+  std::uint64_t steps = 0;   // of work (base/effort.h)
 };
 
 // box_mm: the parts are to lie within [0, box_mm]. Poses are of the shapes' own frames. The same

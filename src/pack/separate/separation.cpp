@@ -28,11 +28,16 @@ constexpr double kTold_mm = 0.1;  // beyond what is asked for
 }  // namespace
 
 Separation::Separation(std::vector<const Shape*> shapes, const Vec2& base_mm, double gap_mm,
-                       std::function<bool()> is_over)
+                       std::function<bool()> is_over, Effort* effort)
     : shapes_(std::move(shapes)),
       base_mm_(base_mm),
       apart_mm_(std::max(gap_mm, kLeastApart_mm)),
-      is_over_(std::move(is_over)) {}
+      is_over_(std::move(is_over)),
+      effort_(effort) {}
+
+void Separation::spend(std::uint64_t steps) const {
+  if (effort_ != nullptr) effort_->spend(steps);
+}
 
 bool Separation::separate(std::vector<Pose>& poses, double height_mm, int most_steps) const {
   const Vec3 box_mm(base_mm_.x(), base_mm_.y(), height_mm);
@@ -55,6 +60,7 @@ double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const 
   const std::vector<Pose> from = poses;
   Eigen::VectorXd at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * poses.size()));
   Overlap here = overlap(shapes_, poses, box_mm, rooms);
+  spend(here.steps);
   QuasiNewton memory;
   int fresh_starts = 0;
   double looked_at = here.energy;
@@ -74,6 +80,7 @@ double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const 
       const Eigen::VectorXd next_at = at + length * direction;
       std::vector<Pose> next_poses = moved(shapes_, from, next_at);
       Overlap next = overlap(shapes_, next_poses, box_mm, rooms);
+      spend(next.steps);
       if (next.energy > here.energy + kSufficient * length * slope) continue;
       is_lower = true;
       memory.learn(next_at - at, next.gradient - here.gradient);
@@ -110,6 +117,7 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
           shapes_[i]->radius_mm + shapes_[j]->radius_mm + apart_mm_)
         pairs.emplace_back(i, j);
   }
+  spend(kStepsOfDistance * pairs.size());
   std::vector<double> gaps(pairs.size());
   parallel_tasks(pairs.size(), [&](std::size_t k) {
     const auto i = pairs[k].first;

@@ -246,6 +246,23 @@ PackProblem low_problem(std::vector<Mesh> meshes, const Vec3& build_mm, double g
   return problem;
 }
 
+// One part above the other.
+Packing stacked(const PackProblem& problem) {
+  Packing packing;
+  double top_mm = 0;
+  for (int i = 0; i < static_cast<int>(problem.items.size()); ++i) {
+    PlacedPart part{{i}, Pose::Identity(), 0};
+    const Box3 box = bounding_box(part_mesh(problem, part));
+    part.pose.translation() = Vec3(0, 0, top_mm) - box.min();
+    top_mm += box.sizes().z() + problem.gap_mm;
+    packing.parts.push_back(part);
+    packing.removal_order.insert(packing.removal_order.begin(), i);
+  }
+  packing.removal_paths.resize(packing.parts.size());
+  measure(problem, packing);
+  return packing;
+}
+
 // Every tray keeps what pack.h promises, and is no higher than without the search.
 TEST(FreeSearch, KeepsWhatIsPromised) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
@@ -283,6 +300,19 @@ TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
   EXPECT_EQ(one.removal_paths, two.removal_paths);
   for (std::size_t i = 0; i < one.parts.size(); ++i)
     EXPECT_EQ(one.parts[i].pose.matrix(), two.parts[i].pose.matrix());
+}
+
+// A search that always finds something better ends by the work that it did, which grows with the
+// number of parts and not with what remains to be found.
+TEST(FreeSearch, EndsWithoutABudgetHoweverManyPartsThereAre) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 40; ++i) meshes.push_back(shapes::box(Vec3(7 + 0.05 * i, 6, 4)));
+  PackProblem problem = low_problem(std::move(meshes), Vec3(40, 40, 300), 0.4);
+  problem.tabu_patience = 2;
+  Pace pace({}, 0);
+  Effort effort;
+  EXPECT_TRUE(searched_freely(problem, stacked(problem), pace, effort));
+  EXPECT_LT(effort.spent(), 1'500'000'000U);
 }
 
 // The chamber is the lowest place that there is, again and again.
