@@ -106,10 +106,10 @@ class FreeSearch {
                               : static_cast<double>(effort_.spent()) / most_steps_;
   }
 
-  // Whether so large a share has passed, less what the proof of what is found takes at last.
+  // Whether so large a share has passed. The end leaves room for the proof of what is found.
   bool is_over(double share) const {
     pace_.tick();
-    return passed() >= share - longest_proof_;
+    return passed() >= std::min(share, 1 - last_proof_);
   }
 
   void lower_on_lattice(double until) {
@@ -204,7 +204,7 @@ class FreeSearch {
     stuck = plan.stuck;
     const bool is_kept = stuck.empty() && least_gap_mm(placed, problem_.gap_mm + kGapTold_mm) >=
                                               problem_.gap_mm - kGapTolerance_mm;
-    longest_proof_ = std::min(kProofShare, std::max(longest_proof_, passed() - began));
+    last_proof_ = std::min(kProofShare, passed() - began);
     if (!is_kept) return false;
     plan_ = std::move(plan);
     parts_ = std::move(parts);
@@ -244,7 +244,7 @@ class FreeSearch {
   double began_;
   double time_;
   double most_steps_;
-  double longest_proof_ = 0;  // of the time
+  double last_proof_ = 0;  // of the time
   double start_mm_ = 0;
   double lowest_mm_ = 0;
   std::optional<LimitSearch> lattice_;

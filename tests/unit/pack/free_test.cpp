@@ -28,6 +28,9 @@ const Shape& random_shape(Random& random) {
   return shapes[random.below(shapes.size())];
 }
 
+// A cube of 20 mm round a closed chamber of 14 mm.
+Mesh shut_box() { return closed_mesh(fixtures::nested_cubes(20, 14)); }
+
 double point_to_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
   double best = check::point_distance(p, corner);
   for (std::size_t k = 0; k < 3; ++k)
@@ -80,6 +83,20 @@ RC_GTEST_PROP(DistanceGrid, TellsTheDistanceToTheClosestTriangle, (std::uint64_t
 BitPart random_bits(Random& random, const BitGrid& grid) {
   return bit_part(random_shape(random), shapes::any_rotation(random), grid,
                   random.below(2) == 0 ? 0 : 1);
+}
+
+// What is thinner than a layer of the lattice is there all the same, wherever it lies in the part;
+// a plate keeps its columns, and a closed chamber has none left.
+TEST(BitPart, HoldsThinMatterAndNoClosedChamber) {
+  const Shape plate(shapes::box(Vec3(15, 15, 0.5)), 3);
+  for (const double limit_mm : {20., 50., 80., 100., 150.}) {
+    const BitGrid grid{0.4, limit_mm / 62, 100, 100};
+    const BitPart lying = bit_part(plate, Mat3::Identity(), grid, 0.025);
+    EXPECT_EQ(lying.runs.size(), static_cast<std::size_t>(lying.width * lying.depth)) << limit_mm;
+  }
+  const Shape shut(shut_box(), 3);
+  const BitPart box = bit_part(shut, Mat3::Identity(), {0.5, 0.5, 100, 100}, 0);
+  EXPECT_EQ(box.runs.size(), static_cast<std::size_t>(box.width * box.depth));
 }
 
 using Matter = std::vector<std::array<bool, kHeights>>;
@@ -157,6 +174,28 @@ RC_GTEST_PROP(Overlap, FallsAgainstItsGradient, (std::uint64_t seed)) {
   RC_ASSERT(next.energy < here.energy);
 }
 
+// Slivers have few samples, triangles that vanish none that is no number.
+TEST(Shape, SamplesByAreaAndKeepsItsMeasure) {
+  const double hair = 1e-19;
+  TriangleSoup wedge;
+  wedge.points = {{hair, 0, 0}, {0, hair, 0}, {0, 0, hair},
+                  {150, 0, 0},  {0, 0.02, 0}, {0, 0, 0.02}};
+  wedge.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                     {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  const Shape thin(closed_mesh(wedge), 20);
+  std::size_t samples = 0;
+  for (const SampleBall& ball : thin.balls) {
+    samples += ball.samples.size();
+    for (const Vec3f& sample : ball.samples) EXPECT_TRUE(sample.allFinite());
+  }
+  EXPECT_LT(samples, 200U);
+  // Where the distances reach far the grid is coarser instead of larger.
+  const Shape far(shapes::box(Vec3(20, 20, 20)), 40);
+  const Vec3f cells =
+      (far.distances.high() - far.distances.low()) / static_cast<float>(far.distances.pitch_mm());
+  EXPECT_LT(cells.maxCoeff(), 85);
+}
+
 TEST(Separation, MovesPartsApartThatOverlapALittle) {
   const Shape ball(shapes::sphere(6, 16), 3);
   const Shape cube(shapes::box(Vec3(10, 10, 10)), 3);
@@ -197,9 +236,6 @@ TEST(Compression, GoesBackToTheLastLayoutThatWasAccepted) {
 
 // A ball under an upturned cup comes out after it, a cube in the clasp of a U is drawn out of it,
 // and a ball in a closed box never comes out.
-// A cube of 20 mm round a closed chamber of 14 mm.
-Mesh shut_box() { return closed_mesh(fixtures::nested_cubes(20, 14)); }
-
 TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   const auto at = [](const Mesh& mesh, const Vec3& low) {
     return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
@@ -315,7 +351,7 @@ TEST(FreeSearch, EndsWithoutABudgetHoweverManyPartsThereAre) {
   EXPECT_LT(effort.spent(), 1'500'000'000U);
 }
 
-// The chamber is the lowest place that there is, again and again.
+// The chamber would be the lowest place that there is.
 TEST(FreeSearch, EndsWhereTheLowestPlaceHasNoWayOut) {
   const PackProblem problem =
       low_problem({shut_box(), shapes::box(Vec3(6, 6, 6))}, Vec3(22, 22, 40), 0);
