@@ -10,6 +10,7 @@
 #include "pack/exact/exact_removal.h"
 #include "pack/free/free_search.h"
 #include "pack/free/limit_search.h"
+#include "pack/free/part_shapes.h"
 #include "pack/pack.h"
 #include "pack/separate/compression.h"
 #include "unit/pack/check.h"
@@ -270,6 +271,66 @@ TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   const ExactDisassembly none = exact_disassembly(
       {at(shut_box(), Vec3(5, 5, 0)), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, base_mm, {});
   EXPECT_EQ(none.stuck, (std::vector<int>{0, 1}));
+}
+
+// A plan that was made for other poses may lead through the plate or over the side.
+TEST(ExactRemoval, PathsStayOverTheBase) {
+  const Mesh box = shapes::box(Vec3(10, 10, 10));
+  const Vec3 low(2, 2, 0.3);
+  const Mesh cube =
+      transformed(box, Pose(Eigen::Translation3d(Vec3(low - bounding_box(box).min()))));
+  const Progress progress;
+  const StandingParts alone({cube}, progress);
+  const Vec2 base_mm(20, 20);
+  const auto stays = [&](const std::vector<Vec3>& path) {
+    return stay_over_base(alone, {path}, base_mm);
+  };
+  EXPECT_TRUE(stays({}));
+  EXPECT_TRUE(stays({{0, 0, -0.2}, {8, 0, 0}, {-10, 0, 5}}));
+  EXPECT_FALSE(stays({{0, 0, -0.5}, {0, 0, 1}}));
+  EXPECT_FALSE(stays({{8.5, 0, 0}, {-8.5, 0, 0}}));
+  EXPECT_FALSE(stays({{0, -2.5, 1}}));
+}
+
+TEST(ExactDisassembly, EndsWhenItIsToldTo) {
+  const auto at = [](const Mesh& mesh, const Vec3& low) {
+    return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
+  };
+  const Progress progress;
+  const StandingParts shut(
+      {at(shut_box(), Vec3(5, 5, 0)), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, progress);
+  int looks = 0;
+  const ExactDisassembly plan =
+      exact_disassembly(shut, Vec2(60, 60), [&looks] { return ++looks > 20; });
+  EXPECT_EQ(plan.stuck.size(), 2U);
+  EXPECT_LT(looks, 30);
+}
+
+TEST(LimitSearch, EndsWhileItStillDraws) {
+  std::vector<Shape> made;
+  for (int i = 0; i < 6; ++i) made.emplace_back(shapes::box(Vec3(6 + i, 5, 4)), 3);
+  FreeParts parts;
+  std::vector<Pose> start(made.size(), Pose::Identity());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    parts.shapes.push_back(&made[i]);
+    start[i].translation() = Vec3(8, 8, 3 + 6. * static_cast<double>(i));
+  }
+  Random random(1);
+  for (int i = 0; i < 24; ++i) parts.rotations.push_back(shapes::any_rotation(random));
+  std::atomic<int> looks = 0;
+  Effort effort;
+  LimitSearch search(
+      parts, Vec2(20, 20), 0.5, start, 40, 1, [&looks] { return ++looks > 5; }, effort);
+  EXPECT_FALSE(search.next([] { return false; }));
+  EXPECT_LT(looks, 100);
+}
+
+TEST(PartShapes, HearThatTheyAreCancelled) {
+  const PackProblem problem = shapes::problem_of({shapes::sphere(6, 12)}, Vec3(20, 20, 20));
+  std::atomic<bool> cancelled = false;
+  Pace pace(Progress({}, &cancelled), 0);
+  cancelled = true;
+  EXPECT_THROW(shapes_of(problem, {{{0}, Pose::Identity(), 0}}, pace), Error);
 }
 
 PackProblem low_problem(std::vector<Mesh> meshes, const Vec3& build_mm, double gap_mm) {
