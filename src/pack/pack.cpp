@@ -229,8 +229,9 @@ bool keeps_off_walls(const Packing& packing, const PackProblem& problem) {
 
 // With parts in cavities and under overhangs too, where that is cheaper on the exact meshes.
 Packing put_under(const PackProblem& problem, Packing settled, PartMaker& maker, Pace& pace) {
+  Effort effort;
   std::optional<Packing> better = height_alone_counts(problem)
-                                      ? searched_freely(problem, settled, pace)
+                                      ? searched_freely(problem, settled, pace, effort)
                                       : searched_by_cost(problem, settled, maker, pace);
   if (!better) return settled;
   for (PlacedPart& part : better->parts) keep_inside(part, problem);

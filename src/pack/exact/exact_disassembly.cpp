@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/parallel.h"
-#include "pack/exact/sweep.h"
+#include "pack/exact/exact_removal.h"
 
 namespace packmerger {
 namespace {
@@ -24,7 +24,6 @@ constexpr std::array<Flood, 3> kFloods{{{0.5, 300}, {2, 300}, {0.5, 1500}}};
 constexpr double kLook_mm = 0.25;                 // between two looks along a step
 constexpr double kRoom_mm = 1.2 * kLeastRoom_mm;  // at the places that are looked at
 constexpr std::size_t kPlacesOfLift = 40;  // between two looks whether it can be lifted from here
-constexpr double kInside_mm = 1e-6;        // rounding of what stands at the edge
 
 using Lattice = std::array<int, 3>;
 
@@ -35,25 +34,20 @@ Vec3 moved_mm(const Lattice& at, const Flood& flood) {
 class Dismantler {
  public:
   // All must outlive it.
-  Dismantler(const std::vector<Mesh>& parts, const Vec2& base_mm, const Plate& plate,
-             const Progress& progress)
-      : parts_(parts), base_mm_(base_mm), plate_(plate), progress_(progress) {
-    for (const Mesh& part : parts) {
-      boxes_.push_back(bounding_box(part));
-      tops_.emplace_back(part, true);
-      bottoms_.emplace_back(part, false);
-      surfaces_.emplace_back(part);
-    }
-    there_.resize(parts.size());
+  Dismantler(const StandingParts& parts, const Vec2& base_mm, const Plate& plate,
+             const std::function<bool()>& is_over)
+      : parts_(parts), base_mm_(base_mm), plate_(plate), is_over_(is_over) {
+    there_.resize(static_cast<std::size_t>(parts.size()));
     std::iota(there_.begin(), there_.end(), 0);
-    std::stable_sort(there_.begin(), there_.end(),
-                     [this](int a, int b) { return box(a).max().z() > box(b).max().z(); });
-    plan_.paths.resize(parts.size());
+    std::stable_sort(there_.begin(), there_.end(), [this](int a, int b) {
+      return parts_.box(a).max().z() > parts_.box(b).max().z();
+    });
+    plan_.paths.resize(there_.size());
     find_who_is_under_whom();
   }
 
   ExactDisassembly run() {
-    while (!there_.empty() && (lift_one() || lead_one_out()))
+    while (!there_.empty() && !is_over() && (lift_one() || lead_one_out()))
       ;
     plan_.stuck = there_;
     std::sort(plan_.stuck.begin(), plan_.stuck.end());
@@ -66,14 +60,16 @@ class Dismantler {
     int parent = -1;
   };
 
-  const Box3& box(int part) const { return boxes_[static_cast<std::size_t>(part)]; }
+  bool is_over() const { return is_over_ && is_over_(); }
 
   void find_who_is_under_whom() {
-    const std::size_t count = boxes_.size();
+    const std::size_t count = there_.size();
     under_.assign(count, std::vector<char>(count, 0));
     parallel_tasks(count, [&](std::size_t i) {
       for (std::size_t j = 0; j < count; ++j)
-        if (i != j) under_[i][j] = is_under(bottoms_[i], Vec3::Zero(), tops_[j], progress_) ? 1 : 0;
+        if (i != j)
+          under_[i][j] =
+              parts_.is_under(static_cast<int>(i), Vec3::Zero(), static_cast<int>(j)) ? 1 : 0;
     });
   }
 
@@ -107,25 +103,19 @@ class Dismantler {
 
   bool comes_off(int part, const Vec3& moved) const {
     return std::none_of(there_.begin(), there_.end(), [&](int other) {
-      return other != part && is_under(bottoms_[static_cast<std::size_t>(part)], moved,
-                                       tops_[static_cast<std::size_t>(other)], progress_);
+      return other != part && parts_.is_under(part, moved, other);
     });
   }
 
   bool is_free(int part, const Vec3& moved) const {
-    const Box3 there = box(part).translated(moved);
-    if (there.min().minCoeff() < -kInside_mm ||
-        (base_mm_ - there.max().head<2>()).minCoeff() < -kInside_mm)
-      return false;
-    const Pose at(Eigen::Translation3d{moved});
+    if (!is_over_base(parts_.box(part), moved, base_mm_)) return false;
+    const Box3 there = parts_.box(part).translated(moved);
     if (!plate_.surely_clear(there) &&
-        plate_.breach_mm(parts_[static_cast<std::size_t>(part)], at) > kWallTolerance_mm)
+        plate_.breach_mm(parts_.mesh(part), Pose(Eigen::Translation3d(moved))) > kWallTolerance_mm)
       return false;
     return std::none_of(there_.begin(), there_.end(), [&](int other) {
-      return other != part && there.exteriorDistance(box(other)) < kRoom_mm &&
-             surface_distance_mm(surfaces_[static_cast<std::size_t>(part)], at,
-                                 surfaces_[static_cast<std::size_t>(other)], Pose::Identity(),
-                                 kRoom_mm) < kRoom_mm;
+      return other != part && there.exteriorDistance(parts_.box(other)) < kRoom_mm &&
+             parts_.distance_mm(part, moved, other, kRoom_mm) < kRoom_mm;
     });
   }
 
@@ -144,8 +134,9 @@ class Dismantler {
     std::priority_queue<Open> open;
     open.push({0, 0});
     int highest = 0;
-    for (std::size_t looked = 1; !open.empty() && looked <= flood.most_places; ++looked) {
-      progress_.check();
+    for (std::size_t looked = 1; !open.empty() && looked <= flood.most_places && !is_over();
+         ++looked) {
+      parts_.progress().check();
       const int index = -open.top().second;
       open.pop();
       const Lattice at = places[static_cast<std::size_t>(index)].at;
@@ -183,18 +174,14 @@ class Dismantler {
     std::reverse(steps.begin(), steps.end());
     std::vector<int> others = there_;
     others.erase(std::find(others.begin(), others.end(), part));
-    if (met_on_path(surfaces_, part, others, steps, progress_)) return std::nullopt;
+    if (parts_.met_on_path(part, others, steps)) return std::nullopt;
     return steps;
   }
 
-  const std::vector<Mesh>& parts_;
+  const StandingParts& parts_;
   Vec2 base_mm_;
   const Plate& plate_;
-  const Progress& progress_;
-  std::vector<Box3> boxes_;
-  std::vector<Facing> tops_;
-  std::vector<Facing> bottoms_;
-  std::vector<MovableSurface> surfaces_;
+  const std::function<bool()>& is_over_;
   std::vector<std::vector<char>> under_;  // [i][j]: i cannot be lifted before j
   std::vector<int> there_;                // the highest first
   ExactDisassembly plan_;
@@ -202,9 +189,14 @@ class Dismantler {
 
 }  // namespace
 
+ExactDisassembly exact_disassembly(const StandingParts& parts, const Vec2& base_mm,
+                                   const Plate& plate, const std::function<bool()>& is_over) {
+  return Dismantler(parts, base_mm, plate, is_over).run();
+}
+
 ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,
                                    const Progress& progress, const Plate& plate) {
-  return Dismantler(parts, base_mm, plate, progress).run();
+  return exact_disassembly(StandingParts(parts, progress), base_mm, plate, {});
 }
 
 }  // namespace packmerger

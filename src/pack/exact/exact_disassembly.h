@@ -2,11 +2,13 @@
 // themselves (assembly planning: Wilson and Latombe, 1994).
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "base/progress.h"
 #include "model/mesh.h"
 #include "model/plate.h"
+#include "pack/exact/sweep.h"
 
 namespace packmerger {
 
@@ -17,10 +19,14 @@ struct ExactDisassembly {
 };
 
 // Parts that can be lifted straight up go first, the highest before the others; where none can, the
-// first that finds a path, by steps of half a millimetre, along which it stays within the base,
-// over no wall of the plate, and apart from those that are still there (sweep.h). The first of two
-// searches looks at so few positions that what comes out easily is soon found. parts: closed, where
-// they stand on one tray, mm.
+// first that finds a path, by steps of half a millimetre or of two, along which it stays within the
+// base, over no wall of the plate, and apart from those that are still there (sweep.h). The first
+// of three searches looks at so few positions that what comes out easily is soon found. Where
+// is_over says so the search ends, and what is still there counts as stuck.
+ExactDisassembly exact_disassembly(const StandingParts& parts, const Vec2& base_mm,
+                                   const Plate& plate, const std::function<bool()>& is_over);
+
+// parts: closed, where they stand on one tray, mm.
 ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,
                                    const Progress& progress, const Plate& plate = {});
 

@@ -1,6 +1,7 @@
 // The last word on gaps: distances between the meshes themselves, nothing of the grid (FCL).
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -14,6 +15,9 @@ namespace packmerger {
 // `enough` are not told from one another: the answer is then some value not below `enough`.
 double least_gap_mm(const std::vector<Mesh>& parts,
                     double enough = std::numeric_limits<double>::infinity());
+
+// Work (base/effort.h) that a distance of two surfaces is counted as, on average.
+inline constexpr std::uint64_t kStepsOfDistance = 20'000;
 
 // A closed surface that is looked at in several poses.
 class MovableSurface {

@@ -10,6 +10,7 @@ namespace packmerger {
 namespace {
 
 constexpr double kMostAcross = 500;  // cells
+constexpr std::uint64_t kStepsOfFacet = 200;
 
 double cross_z(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -98,18 +99,41 @@ Facing::Facing(const Mesh& mesh, bool up) {
               [&](std::vector<int>& cell) { cell.push_back(i); });
 }
 
-bool is_under(const Facing& bottom, const Vec3& moved, const Facing& top,
-              const Progress& progress) {
+StandingParts::StandingParts(const std::vector<Mesh>& parts, const Progress& progress)
+    : StandingParts(parts, {}, std::vector<Pose>(parts.size(), Pose::Identity()), progress) {}
+
+StandingParts::StandingParts(const std::vector<Mesh>& parts, std::vector<MovableSurface> surfaces,
+                             std::vector<Pose> poses, const Progress& progress)
+    : parts_(parts),
+      progress_(progress),
+      boxes_(parts.size()),
+      tops_(parts.size()),
+      bottoms_(parts.size()),
+      surfaces_(std::move(surfaces)),
+      poses_(std::move(poses)) {
+  parallel_tasks(parts.size(), [&](std::size_t i) {
+    progress_.check();
+    boxes_[i] = bounding_box(parts_[i]);
+    tops_[i].emplace(parts_[i], true);
+    bottoms_[i].emplace(parts_[i], false);
+  });
+  for (const Mesh& part : parts_) effort_.spend(kStepsOfFacet * part.n_triangles());
+}
+
+bool StandingParts::is_under(int part, const Vec3& moved, int other) const {
+  const Facing& bottom = *bottoms_[static_cast<std::size_t>(part)];
+  const Facing& top = *tops_[static_cast<std::size_t>(other)];
   if (bottom.facets().empty() || top.facets().empty()) return false;
   const Box3 a = bottom.box().translated(moved);
   const Box3& b = top.box();
   if ((a.min().array() >= b.max().array()).any() ||
       (a.max().array() <= b.min().array()).head<2>().any())
     return false;
+  effort_.spend(kStepsOfFacet * bottom.facets().size());
   std::atomic<bool> found{false};
   parallel_for(bottom.facets().size(), [&](std::size_t i) {
     if (found.load(std::memory_order_relaxed)) return;
-    progress.check();
+    progress_.check();
     const Facet lower = moved_by(bottom.facets()[i], moved);
     top.near(lower, [&](const Facet& upper) {
       if (!found.load(std::memory_order_relaxed) && stands_above(upper, lower)) found = true;
@@ -118,20 +142,30 @@ bool is_under(const Facing& bottom, const Vec3& moved, const Facing& top,
   return found;
 }
 
-std::optional<int> met_on_path(const std::vector<MovableSurface>& surfaces, int part,
-                               const std::vector<int>& there, const std::vector<Vec3>& path,
-                               const Progress& progress) {
+double StandingParts::distance_mm(int part, const Vec3& moved, int other, double enough) const {
+  while (surfaces_.size() < parts_.size()) {
+    progress_.check();
+    surfaces_.emplace_back(parts_[surfaces_.size()]);
+  }
+  effort_.spend(kStepsOfDistance);
+  const auto a = static_cast<std::size_t>(part);
+  const auto b = static_cast<std::size_t>(other);
+  return surface_distance_mm(surfaces_[a], Eigen::Translation3d(moved) * poses_[a], surfaces_[b],
+                             poses_[b], enough);
+}
+
+std::optional<int> StandingParts::met_on_path(int part, const std::vector<int>& there,
+                                              const std::vector<Vec3>& path) const {
   Vec3 place = Vec3::Zero();
   for (const Vec3& step : path) {
     const double length = step.norm();
     for (double gone = 0; gone < length;) {
-      progress.check();
-      const Pose here(Eigen::Translation3d(place + step * (gone / length)));
+      progress_.check();
+      const Vec3 here = place + step * (gone / length);
       double room = length - gone + kLeastRoom_mm;
       for (const int other : there) {
-        room = std::min(room, surface_distance_mm(surfaces[static_cast<std::size_t>(part)], here,
-                                                  surfaces[static_cast<std::size_t>(other)],
-                                                  Pose::Identity(), room));
+        if (box(part).translated(here).exteriorDistance(box(other)) >= room) continue;
+        room = std::min(room, distance_mm(part, here, other, room));
         if (room < kLeastRoom_mm) return other;
       }
       gone += room;

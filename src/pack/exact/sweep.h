@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/effort.h"
 #include "base/progress.h"
 #include "pack/exact/exact_gap.h"
 
@@ -55,15 +56,42 @@ class Facing {
   std::vector<std::vector<int>> cells_;
 };
 
-// Whether the part whose lower side `bottom` is, moved first, meets on its way straight up the
-// one whose upper side `top` is. What overlaps by less than kTouch_mm, seen from above, touches.
-bool is_under(const Facing& bottom, const Vec3& moved, const Facing& top, const Progress& progress);
+// Closed parts where they stand on one tray, and what is asked of them again and again.
+class StandingParts {
+ public:
+  // parts: mm. progress must outlive it; every question may be cancelled by it.
+  StandingParts(const std::vector<Mesh>& parts, const Progress& progress);
+  // surfaces: of the same parts, in frames of their own that stand at the poses.
+  StandingParts(const std::vector<Mesh>& parts, std::vector<MovableSurface> surfaces,
+                std::vector<Pose> poses, const Progress& progress);
 
-// The part that surfaces[part] meets along its path, or comes closer to than kLeastRoom_mm, of
-// those that are there: where it is told from one place to the next by steps that are as long as
-// the room around it.
-std::optional<int> met_on_path(const std::vector<MovableSurface>& surfaces, int part,
-                               const std::vector<int>& there, const std::vector<Vec3>& path,
-                               const Progress& progress);
+  int size() const { return static_cast<int>(boxes_.size()); }
+  const Mesh& mesh(int part) const { return parts_[static_cast<std::size_t>(part)]; }
+  const Box3& box(int part) const { return boxes_[static_cast<std::size_t>(part)]; }
+  const Progress& progress() const { return progress_; }
+  // How much work (base/effort.h) went into answers; the same on any number of threads.
+  std::uint64_t steps() const { return effort_.spent(); }
+
+  // Whether the part, moved first, meets the other one on its way straight up. What overlaps by
+  // less than kTouch_mm, seen from above, touches.
+  bool is_under(int part, const Vec3& moved, int other) const;
+  // Of the part, moved, to the other one, told up to `enough`, mm. Not while other threads ask.
+  double distance_mm(int part, const Vec3& moved, int other, double enough) const;
+  // The part that this one meets along its path, or comes closer to than kLeastRoom_mm, of those
+  // that are there: where it is told from one place to the next by steps that are as long as the
+  // room around it.
+  std::optional<int> met_on_path(int part, const std::vector<int>& there,
+                                 const std::vector<Vec3>& path) const;
+
+ private:
+  std::vector<Mesh> parts_;
+  const Progress& progress_;
+  std::vector<Box3> boxes_;
+  std::vector<std::optional<Facing>> tops_;
+  std::vector<std::optional<Facing>> bottoms_;
+  mutable std::vector<MovableSurface> surfaces_;  // made when a distance is asked for
+  std::vector<Pose> poses_;                       // of the surfaces
+  mutable Effort effort_;
+};
 
 }  // namespace packmerger

@@ -62,7 +62,8 @@ bool cheaper_place(const HeightBits& tray, const SupportColumns& columns, const 
       taken.fill(too_high);
       for (int k = places - x; k < kPositions; ++k)
         taken[static_cast<std::size_t>(k)] = ~std::uint64_t{0};
-      if (!take(tray, bits, y * tray.stride() + x, taken)) continue;
+      std::size_t looked = 0;
+      if (!take(tray, bits, y * tray.stride() + x, taken, looked)) continue;
       for (int k = 0; k < here; ++k) {
         const std::uint64_t free = ~taken[static_cast<std::size_t>(k)];
         if (free == 0) continue;

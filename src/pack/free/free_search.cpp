@@ -1,14 +1,12 @@
 #include "pack/free/free_search.h"
 
 #include <algorithm>
-#include <memory>
 
-#include "base/parallel.h"
 #include "pack/exact/exact_disassembly.h"
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/exact_removal.h"
 #include "pack/free/limit_search.h"
-#include "pack/free/tray_shapes.h"
+#include "pack/free/part_shapes.h"
 #include "pack/maps/rotations.h"
 #include "pack/separate/compression.h"
 
@@ -21,6 +19,12 @@ constexpr double kSearchShare = 0.6;            // of the time, before the compr
 constexpr std::size_t kRoundsOfPatience = 400;  // for each round of the height field's search
 constexpr std::size_t kRoundsOfTurn = 6000;  // without a layout, before the lattice begins afresh
 constexpr double kLastTurn = 0.98;           // of the time: none begins after it
+// Of work where there is no budget, for each round of the height field's patience: about what that
+// spends on as many parts.
+constexpr double kStepsOfPatience = 3e8;  // of all trays
+constexpr double kStepsOfPart = 2e6;
+constexpr double kStepsOfSecond = 1e9;  // of a budget
+constexpr double kProofShare = 0.15;    // of all the work, that looking for ways out may take
 constexpr int kSeparationSteps = 150;
 constexpr double kRaise = 0.012;  // of the height, where separation found no room
 constexpr double kMostRaised = 0.05;
@@ -30,6 +34,8 @@ constexpr double kShake_mm = 0.3;             // of what jammed
 constexpr std::size_t kMostStuckTakenOut = 2;
 constexpr int kMostStuckLayouts = 10;     // one after the other: what is low there has no way out
 constexpr int kCompressionPatience = 16;  // failures one after the other
+constexpr double kGapTolerance_mm = 1e-6;
+constexpr double kGapTold_mm = 1e-3;
 
 std::vector<Mat3> right_angles() {
   const RotationSet set = rotation_set(radians(90));
@@ -39,23 +45,35 @@ std::vector<Mat3> right_angles() {
   return rotations;
 }
 
+// Of a tray that has such a share of all trays' work.
+double most_steps(const PackProblem& problem, double share, std::size_t parts) {
+  return std::max(1, problem.tabu_patience) *
+         (share * kStepsOfPatience + static_cast<double>(parts) * kStepsOfPart);
+}
+
 // One tray.
 class FreeSearch {
  public:
-  // share: of the time that is left.
-  FreeSearch(const PackProblem& problem, std::vector<std::shared_ptr<const Shape>> shapes,
-             const std::vector<Pose>& start, double share, std::uint64_t seed, Pace& pace)
+  // parts: of the tray, where they stand. share: of the time that is left, or of the work that all
+  // trays may take.
+  FreeSearch(const PackProblem& problem, std::vector<PlacedPart> parts,
+             std::vector<std::shared_ptr<const Shape>> shapes, double share, std::uint64_t seed,
+             Pace& pace)
       : problem_(problem),
+        parts_(std::move(parts)),
         shapes_(std::move(shapes)),
-        start_(start),
         pace_(pace),
         random_(seed),
         separation_(
             pointers(), problem.build_mm.head<2>(), problem.gap_mm, [this] { return is_over(1); },
-            problem.plate),
+            problem.plate, &effort_),
         began_(pace.passed()),
-        time_(share * (1 - began_)) {
-    lowest_mm_ = separation_.height_mm(start);
+        time_(share * (1 - began_)),
+        most_steps_(pace.has_budget() ? time_ * problem.budget_s * kStepsOfSecond
+                                      : most_steps(problem, share, parts_.size())) {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      start_.push_back(own_frame(parts_[i].pose, *shapes_[i]));
+    lowest_mm_ = separation_.height_mm(start_);
     start_mm_ = lowest_mm_;
   }
 
@@ -71,8 +89,9 @@ class FreeSearch {
     return !poses_.empty();
   }
 
-  const std::vector<Pose>& poses() const { return poses_; }
+  const std::vector<PlacedPart>& parts() const { return parts_; }
   const ExactDisassembly& plan() const { return plan_; }
+  std::uint64_t spent() const { return effort_.spent(); }
 
  private:
   std::vector<const Shape*> pointers() const {
@@ -81,17 +100,24 @@ class FreeSearch {
     return shapes;
   }
 
-  // share: of the time that the tray has.
+  // Of the time that the tray has; of the work that it may take, where there is no budget.
+  double passed() const {
+    return pace_.has_budget() ? (pace_.passed() - began_) / time_
+                              : static_cast<double>(effort_.spent()) / most_steps_;
+  }
+
+  // Whether so large a share has passed. The end leaves room for the proof of what is found.
   bool is_over(double share) const {
     pace_.tick();
-    return pace_.passed() >= began_ + share * time_;
+    return passed() >= std::min(share, 1 - last_proof_);
   }
 
   void lower_on_lattice(double until) {
     if (!lattice_)
-      lattice_.emplace(FreeParts{pointers(), right_angles()}, problem_.build_mm.head<2>(),
-                       problem_.plate, std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_,
-                       random_.bits());
+      lattice_.emplace(
+          FreeParts{pointers(), right_angles()}, problem_.build_mm.head<2>(), problem_.plate,
+          std::max(problem_.gap_mm, kLeastApart_mm), start_, start_mm_, random_.bits(),
+          [this] { return is_over(1); }, effort_);
     std::size_t rounds = 0;
     int stuck_layouts = 0;
     const std::size_t patience =
@@ -101,8 +127,7 @@ class FreeSearch {
     while (stuck_layouts < kMostStuckLayouts &&
            lattice_->next([&] { return is_over(until) || ++rounds > patience; })) {
       rounds = 0;
-      const double lower_mm =
-          pace_.has_budget() && !is_over(kEarly) ? kMuchLower_mm : kWorthSeparating_mm;
+      const double lower_mm = is_over(kEarly) ? kWorthSeparating_mm : kMuchLower_mm;
       if (lattice_->height_mm() < lowest_mm_ - lower_mm) {
         const std::vector<int> stuck = made_exact(*lattice_);
         if (!stuck.empty()) {
@@ -122,8 +147,9 @@ class FreeSearch {
     std::vector<Pose> poses = poses_.empty() ? start_ : poses_;
     compress(
         separation_, poses, kCompressionPatience, [this] { return is_over(1); },
-        [this](const std::vector<Pose>& lower, double height_mm) {
-          return certified(lower, height_mm).empty();
+        [this](const std::vector<Pose>& lower, double) {
+          std::vector<int> stuck;
+          return certified(lower, stuck);
         },
         random_);
   }
@@ -138,6 +164,7 @@ class FreeSearch {
   // Separates what the lattice found, at its height or a little above, where that is low enough.
   // Returns the parts that cannot be taken out of what came of it.
   std::vector<int> made_exact(const LimitSearch& search) {
+    std::vector<int> stuck;
     const double height_mm = search.height_mm();
     for (double raised = 0;
          raised < kMostRaised && height_mm * (1 + raised) < kWorthIt * lowest_mm_;
@@ -147,48 +174,88 @@ class FreeSearch {
         shake(poses, kShake_mm, 0, random_);
         squeeze(poses, -raised);
       }
-      if (separation_.separate(poses, height_mm * (1 + raised), kSeparationSteps))
-        return certified(poses, separation_.height_mm(poses));
+      if (separation_.separate(poses, height_mm * (1 + raised), kSeparationSteps)) {
+        certified(poses, stuck);
+        break;
+      }
       if (is_over(1)) break;
     }
-    return {};
+    return stuck;
   }
 
-  // Keeps the layout where every part has a way out; returns those that have none.
-  std::vector<int> certified(const std::vector<Pose>& poses, double height_mm) {
-    const Progress& progress = pace_.progress();
+  // Keeps the layout where it holds what is promised, on the poses that are its last: every part
+  // has a way out, and its gap. stuck: the parts that have no way out.
+  bool certified(std::vector<Pose> poses, std::vector<int>& stuck) {
+    const double began = passed();
+    let_down(poses);
+    std::vector<PlacedPart> parts = parts_;
     std::vector<Mesh> placed;
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      placed.push_back(transformed(shapes_[i]->mesh, poses[i]));
-    if (plan_.order.empty() || first_obstacle(placed, plan_.order, plan_.paths, progress)) {
-      ExactDisassembly plan =
-          exact_disassembly(placed, problem_.build_mm.head<2>(), progress, problem_.plate);
-      if (!plan.stuck.empty()) return plan.stuck;
-      plan_ = std::move(plan);
+    std::vector<MovableSurface> surfaces;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      parts[i].pose = part_frame(poses[i], *shapes_[i]);
+      keep_inside(parts[i], problem_);
+      poses[i] = own_frame(parts[i].pose, *shapes_[i]);
+      placed.push_back(placed_mesh(problem_, parts[i]));
+      surfaces.push_back(shapes_[i]->surface);
     }
-    poses_ = poses;
-    lowest_mm_ = height_mm;
-    return {};
+    const StandingParts standing(placed, std::move(surfaces), poses, pace_.progress());
+    ExactDisassembly plan = plan_of(standing);
+    effort_.spend(standing.steps());
+    stuck = plan.stuck;
+    const bool is_kept = stuck.empty() && least_gap_mm(placed, problem_.gap_mm + kGapTold_mm) >=
+                                              problem_.gap_mm - kGapTolerance_mm;
+    last_proof_ = std::min(kProofShare, passed() - began);
+    if (!is_kept) return false;
+    plan_ = std::move(plan);
+    parts_ = std::move(parts);
+    poses_ = std::move(poses);
+    lowest_mm_ = separation_.height_mm(poses_);
+    return true;
+  }
+
+  // The last one, where that will do.
+  ExactDisassembly plan_of(const StandingParts& standing) const {
+    const Vec2 base_mm = problem_.build_mm.head<2>();
+    if (!plan_.order.empty() && stay_over_base(standing, plan_.paths, base_mm) &&
+        !first_obstacle(standing, plan_.order, plan_.paths))
+      return plan_;
+    return exact_disassembly(standing, base_mm, problem_.plate, [&] {
+      pace_.tick();
+      return passed() >= 1 || static_cast<double>(standing.steps()) > kProofShare * most_steps_;
+    });
+  }
+
+  // Down to the plate.
+  void let_down(std::vector<Pose>& poses) const {
+    double lowest = poses.front().translation().z();
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      lowest = std::min(lowest, shapes_[i]->surface.box(poses[i]).min().z());
+    for (Pose& pose : poses) pose.translation().z() -= lowest;
   }
 
   const PackProblem& problem_;
+  std::vector<PlacedPart> parts_;  // the lowest that can be taken apart, or the start
   std::vector<std::shared_ptr<const Shape>> shapes_;
-  const std::vector<Pose>& start_;
+  std::vector<Pose> start_;
   Pace& pace_;
   Random random_;
+  Effort effort_;
   Separation separation_;
   double began_;
   double time_;
+  double most_steps_;
+  double last_proof_ = 0;  // of the time
   double start_mm_ = 0;
   double lowest_mm_ = 0;
   std::optional<LimitSearch> lattice_;
-  std::vector<Pose> poses_;  // the lowest that can be taken apart; empty: the start
+  std::vector<Pose> poses_;  // of parts_; empty: the start
   ExactDisassembly plan_;    // of these
 };
 
 }  // namespace
 
-std::optional<Packing> searched_freely(const PackProblem& problem, Packing packing, Pace& pace) {
+std::optional<Packing> searched_freely(const PackProblem& problem, Packing packing, Pace& pace,
+                                       Effort& effort) {
   bool found = false;
   Random random(problem.seed);
   std::vector<int> order;
@@ -200,25 +267,26 @@ std::optional<Packing> searched_freely(const PackProblem& problem, Packing packi
         here.push_back(i);
         parts.push_back(packing.parts[i]);
       }
-    const auto shapes = shapes_of(problem, parts);
-    std::vector<Pose> start;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      start.push_back(own_frame(parts[i].pose, *shapes[i]));
-    const double trays_left = static_cast<double>(packing.trays.size()) - tray;
-    FreeSearch search(problem, shapes, start, 1 / trays_left, random.bits(), pace);
-    if (!search.run()) {
+    const auto trays = static_cast<double>(packing.trays.size());
+    const double share = pace.has_budget() ? 1 / (trays - tray) : 1 / trays;
+    const std::uint64_t seed = random.bits();
+    auto shapes = shapes_of(problem, parts, pace);
+    std::optional<FreeSearch> search;
+    if (!shapes.empty())
+      search.emplace(problem, std::move(parts), std::move(shapes), share, seed, pace);
+    const bool is_lower = search && search->run();
+    if (search) effort.spend(search->spent());
+    if (!is_lower) {
       for (const int part : packing.removal_order)
         if (packing.parts[static_cast<std::size_t>(part)].tray == tray) order.push_back(part);
       continue;
     }
     found = true;
-    std::vector<Pose> poses = search.poses();
-    let_down(poses, shapes);
     for (std::size_t i = 0; i < here.size(); ++i) {
-      packing.parts[here[i]].pose = poses[i] * Eigen::Translation3d(-shapes[i]->centre);
-      packing.removal_paths[here[i]] = search.plan().paths[i];
+      packing.parts[here[i]] = search->parts()[i];
+      packing.removal_paths[here[i]] = search->plan().paths[i];
     }
-    for (const int part : search.plan().order)
+    for (const int part : search->plan().order)
       order.push_back(static_cast<int>(here[static_cast<std::size_t>(part)]));
   }
   if (!found) return std::nullopt;

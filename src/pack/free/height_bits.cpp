@@ -8,6 +8,8 @@ namespace packmerger {
 namespace {
 
 constexpr double kRounding = 1e-4;  // cells
+// Of a pitch: by how much a distance may be wrong between the samples of its grid.
+constexpr float kDoubt = 0.9F;
 constexpr std::ptrdiff_t kReadAhead = 8;
 constexpr std::array<int, 4> kStrides{8, 4, 2, 1};
 
@@ -38,6 +40,71 @@ std::vector<BitRun> spread(const std::vector<BitRun>& runs) {
   return ordered;
 }
 
+// Which layers of a column hold matter. Distances tell how many layers on a surface can come at the
+// soonest.
+class Column {
+ public:
+  // up: one layer on, in the shape's frame.
+  Column(const DistanceGrid& distances, const Vec3f& up, float unit_mm, float reach, int layers)
+      : distances_(distances),
+        up_(up),
+        unit_mm_(unit_mm),
+        reach_(reach),
+        layers_(layers),
+        doubt_(kDoubt * static_cast<float>(distances.pitch_mm())),
+        parts_of_layer_(static_cast<int>(std::ceil(unit_mm / (2 * reach)))) {}
+
+  // from: the middle of the lowest layer. By bit.
+  std::uint64_t matter(const Vec3f& from) const {
+    std::uint64_t bits = 0;
+    int alike = 1;
+    for (int z = 0; z <= layers_; z += alike) {
+      const float here = lacking(from, static_cast<float>(z));
+      alike = std::min(1 + sure_layers(here), std::max(1, layers_ - z));
+      if (here <= 0)
+        bits |= ((std::uint64_t{1} << alike) - 1) << z;
+      else if (parts_of_layer_ > 1 && here < unit_mm_ + 2 * doubt_)
+        bits |= thin_matter(from, z);
+    }
+    return bits & ((std::uint64_t{1} << layers_) - 1);
+  }
+
+ private:
+  // Beyond the reach, at a height in layers; 0 and less: matter.
+  float lacking(const Vec3f& from, float z) const { return distances_.at(from + z * up_) - reach_; }
+
+  // How many more are of the same kind.
+  int sure_layers(float lacking) const {
+    if (lacking >= DistanceGrid::kFar - reach_) return 0;
+    return std::max(0, static_cast<int>((std::abs(lacking) - doubt_) / unit_mm_));
+  }
+
+  // Below the middle of a layer, and above that of the one before: where neither holds any, what is
+  // thinner counts in the layer in which most of it lies.
+  std::uint64_t thin_matter(const Vec3f& from, int layer) const {
+    if (lacking(from, static_cast<float>(layer - 1)) <= 0) return 0;
+    float deepest = 0;
+    std::uint64_t bit = 0;
+    for (int k = 1; k < parts_of_layer_; ++k) {
+      const float z =
+          static_cast<float>(layer) - static_cast<float>(k) / static_cast<float>(parts_of_layer_);
+      const float there = lacking(from, z);
+      if (z < -0.5F || there > deepest || (there == deepest && bit != 0)) continue;
+      deepest = there;
+      bit = std::uint64_t{1} << std::min(static_cast<int>(z + 0.5F), layers_ - 1);
+    }
+    return bit;
+  }
+
+  const DistanceGrid& distances_;
+  Vec3f up_;
+  float unit_mm_;
+  float reach_;
+  int layers_;
+  float doubt_;
+  int parts_of_layer_;
+};
+
 }  // namespace
 
 BitPart bit_part(const Shape& shape, const Mat3& rotation, const BitGrid& grid, double apart_mm) {
@@ -60,20 +127,19 @@ BitPart bit_part(const Shape& shape, const Mat3& rotation, const BitGrid& grid, 
   const auto reach = static_cast<float>(apart_mm / 2 + kMatterReach * grid.cell_mm);
   const Mat3 back = rotation.transpose();
   const Vec3f up = (back * Vec3(0, 0, grid.unit_mm)).cast<float>();
+  const Column column(shape.distances, up, static_cast<float>(grid.unit_mm), reach, layers);
   std::vector<BitRun> runs;
   for (int y = 0; y < part.depth; ++y)
     for (int x = 0; x < part.width; ++x) {
       const Vec3 lowest =
           box.min() + Vec3((x + 0.5) * grid.cell_mm, (y + 0.5) * grid.cell_mm, 0.5 * grid.unit_mm);
-      const Vec3f from = (back * lowest).cast<float>();
-      int low = -1;
-      for (int z = 0; z <= layers; ++z) {
-        const bool matter =
-            z < layers && shape.distances.at(from + static_cast<float>(z) * up) <= reach;
-        if (matter && low < 0) low = z;
-        if (matter || low < 0) continue;
-        runs.push_back(run_of(x, y, low, z));
-        low = -1;
+      const std::uint64_t matter = column.matter((back * lowest).cast<float>());
+      for (int low = 0; low < layers;) {
+        low += std::countr_zero(matter >> low);
+        if (low >= layers) break;
+        const int high = low + std::countr_one(matter >> low);
+        runs.push_back(run_of(x, y, low, high));
+        low = high;
       }
     }
   part.runs = spread(runs);

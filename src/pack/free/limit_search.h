@@ -7,28 +7,22 @@
 #include <vector>
 
 #include "base/random.h"
-#include "model/plate.h"
-#include "pack/free/lowest_place.h"
+#include "pack/free/lattice_layout.h"
 
 namespace packmerger {
-
-// What the search is about. Parts that are copies of one another share their shape.
-struct FreeParts {
-  std::vector<const Shape*> shapes;  // by part
-  // That every part is tried in, beside that of the start; few parts also in these after the
-  // start's.
-  std::vector<Mat3> rotations;
-};
 
 class LimitSearch {
  public:
   // plate: its walls within the base. start: poses of the shapes' frames, a layout that lies within
   // the base, and what its height is; parts that the lattice finds too close are put back
-  // elsewhere. shapes must outlive it.
+  // elsewhere. shapes and effort must outlive it. is_over says that time is up for good, to any
+  // thread; it may throw to cancel.
   LimitSearch(FreeParts parts, const Vec2& base_mm, const Plate& plate, double apart_mm,
-              const std::vector<Pose>& start, double start_height_mm, std::uint64_t seed);
+              const std::vector<Pose>& start, double start_height_mm, std::uint64_t seed,
+              std::function<bool()> is_over, Effort& effort);
 
-  // Rounds until all parts lie below the limit; false where is_over says so before.
+  // Rounds until all parts lie below the limit; false where is_over, this one or the search's own,
+  // says so before.
   bool next(const std::function<bool()>& is_over);
 
   // Of a layout that next() found: not quite apart, but nearly.
@@ -42,44 +36,23 @@ class LimitSearch {
   void take_out(const std::vector<int>& parts);
 
  private:
-  struct Put {
-    std::size_t way = 0;  // of the part's shape
-    BitPlace place;
-  };
-
-  void draw();
   void begin(const std::vector<Pose>& start);
   bool greedy(bool largest_first);
-  void put_nearest(const std::vector<Put>& puts, double old_unit_mm);
   void round();
   std::vector<int> neighbours(std::size_t count, const std::vector<char>& taken);
   bool put_back(int part, double noise_mm, double per_column_mm, double per_row_mm, double share);
-  void fill(int part);
-  void clear(int part);
-  const BitPart& drawn(int part, std::size_t way) const;
-  double top_mm(int part) const;
-  double highest_mm() const;
-  Vec3 middle(int part) const;
-  Pose pose(int part) const;
-  std::vector<int> unplaced() const;
 
-  FreeParts parts_;
   Vec2 base_mm_;
   double apart_mm_;
   Random random_;
-  std::vector<const Shape*> different_;      // shapes, each once
-  std::vector<std::size_t> shape_of_;        // by part: index into different_
-  std::vector<std::vector<Mat3>> ways_;      // by shape: without twins
-  std::vector<std::vector<BitPart>> drawn_;  // by shape and way
-  BitGrid grid_;
-  HeightBits bare_;  // nothing but walls
-  HeightBits tray_;
+  std::function<bool()> is_over_;
+  Effort& effort_;
+  LatticeLayout layout_;
+  bool is_drawn_;
   double limit_mm_;  // with the room that parts keep from one another, as all heights here
   double drawn_for_mm_;
   double shrink_;             // the next limit, of the height
   std::size_t rounds_ = 0;    // since the limit was set
-  std::vector<Put> puts_;     // by part
-  std::vector<char> placed_;  // by part
   std::vector<double> size_;  // by part: large ones are put back first
   std::vector<double> weight_;
 };

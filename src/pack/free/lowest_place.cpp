@@ -23,6 +23,7 @@ bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating&
   const int columns = tray.columns() - part.width + 1;
   const int rows = tray.rows() - part.depth + 1;
   bool found = false;
+  std::size_t looked = 0;
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; x += kPositions) {
       const double aside = part.height_mm + rating.malus_mm + rating.per_row_mm * y;
@@ -38,14 +39,17 @@ bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating&
       taken.fill(above);
       for (int k = columns - x; k < kPositions; ++k)
         taken[static_cast<std::size_t>(k)] = ~std::uint64_t{0};
-      if (!take(tray, part, y * tray.stride() + x, taken)) continue;
+      const bool is_free = take(tray, part, y * tray.stride() + x, taken, looked);
+      best.looked += looked;
+      if (!is_free) continue;
       for (int k = 0; k < kPositions; ++k) {
         const std::uint64_t free = ~taken[static_cast<std::size_t>(k)];
         if (free == 0) continue;
         const int z = std::countr_zero(free);
         const double rated = aside + z * rating.unit_mm + rating.per_column_mm * (x + k);
         if (rated >= best.rating_mm) continue;
-        best = {{x + k, y, z}, rated};
+        best.place = {x + k, y, z};
+        best.rating_mm = rated;
         found = true;
       }
     }

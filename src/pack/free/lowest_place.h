@@ -23,11 +23,12 @@ struct BitPlace {
 
 struct RatedPlace {
   BitPlace place;
-  double rating_mm = 0;  // the part's top, its malus and what the position counts
+  double rating_mm = 0;      // the part's top, its malus and what the position counts
+  std::uint64_t looked = 0;  // runs of parts, at eight positions each, that it took to find it
 };
 
 // Puts into `best` the place of the lowest rating, where there is one that is lower than that in
-// it; of equal ones the first by y and x. Returns whether there was one.
+// it; of equal ones the first by y and x. Returns whether there was one. Adds to best.looked.
 bool lower_place(const HeightBits& tray, const BitPart& part, const PlaceRating& rating,
                  RatedPlace& best);
 

@@ -7,7 +7,7 @@
 #include "pack/exact/exact_figures.h"
 #include "pack/exact/exact_removal.h"
 #include "pack/free/cost_search.h"
-#include "pack/free/tray_shapes.h"
+#include "pack/free/part_shapes.h"
 #include "pack/maps/rotations.h"
 #include "pack/separate/separation.h"
 #include "pack/separate/sinking.h"
@@ -33,11 +33,12 @@ constexpr std::size_t kRoundsOfPatience = 5;  // on the lattice, for each of the
 // One tray.
 class CostedTray {
  public:
+  // share: of the time that is left.
   CostedTray(const PackProblem& problem, const std::vector<PlacedPart>& parts,
-             const TrayMeasure& figures, PartMaker& maker, double share, std::uint64_t seed,
-             Pace& pace)
+             std::vector<std::shared_ptr<const Shape>> shapes, const TrayMeasure& figures,
+             PartMaker& maker, double share, std::uint64_t seed, Pace& pace)
       : problem_(problem),
-        shapes_(shapes_of(problem, parts)),
+        shapes_(std::move(shapes)),
         material_mm3_(figures.material_mm3),
         pace_(pace),
         random_(seed),
@@ -65,9 +66,7 @@ class CostedTray {
   }
 
   // Model → tray.
-  Pose pose(std::size_t part) const {
-    return poses_[part] * Eigen::Translation3d(-shapes_[part]->centre);
-  }
+  Pose pose(std::size_t part) const { return part_frame(poses_[part], *shapes_[part]); }
   const ExactDisassembly& plan() const { return plan_; }
 
  private:
@@ -151,8 +150,15 @@ class CostedTray {
          problem_.plate, over);
     const Separation separation(pointers_, box.head<2>(), problem_.gap_mm, over, problem_.plate);
     if (!separation.separate(poses, box.z(), kSeparationSteps)) return false;
-    let_down(poses, shapes_);
+    let_down(poses);
     return true;
+  }
+
+  void let_down(std::vector<Pose>& poses) const {
+    double lowest = poses.front().translation().z();
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      lowest = std::min(lowest, shapes_[i]->surface.box(poses[i]).min().z());
+    for (Pose& pose : poses) pose.translation().z() -= lowest;
   }
 
   // How far the contents may reach along each axis before the tray becomes dearer.
@@ -201,7 +207,7 @@ class CostedTray {
   }
 
   const PackProblem& problem_;
-  TrayShapes shapes_;
+  std::vector<std::shared_ptr<const Shape>> shapes_;
   std::vector<const Shape*> pointers_;
   std::vector<std::vector<Mat3>> ways_;  // by part
   double material_mm3_;
@@ -230,19 +236,24 @@ std::optional<Packing> searched_by_cost(const PackProblem& problem, Packing pack
         parts.push_back(packing.parts[i]);
       }
     const double trays_left = static_cast<double>(packing.trays.size()) - tray;
-    CostedTray costed(problem, parts, packing.trays[static_cast<std::size_t>(tray)], maker,
-                      1 / trays_left, random.bits(), pace);
-    if (!costed.run()) {
+    const std::uint64_t seed = random.bits();
+    auto shapes = shapes_of(problem, parts, pace);
+    std::optional<CostedTray> costed;
+    if (!shapes.empty())
+      costed.emplace(problem, parts, std::move(shapes),
+                     packing.trays[static_cast<std::size_t>(tray)], maker, 1 / trays_left, seed,
+                     pace);
+    if (!costed || !costed->run()) {
       for (const int part : packing.removal_order)
         if (packing.parts[static_cast<std::size_t>(part)].tray == tray) order.push_back(part);
       continue;
     }
     found = true;
     for (std::size_t i = 0; i < here.size(); ++i) {
-      packing.parts[here[i]].pose = costed.pose(i);
-      packing.removal_paths[here[i]] = costed.plan().paths[i];
+      packing.parts[here[i]].pose = costed->pose(i);
+      packing.removal_paths[here[i]] = costed->plan().paths[i];
     }
-    for (const int part : costed.plan().order)
+    for (const int part : costed->plan().order)
       order.push_back(static_cast<int>(here[static_cast<std::size_t>(part)]));
   }
   if (!found) return std::nullopt;

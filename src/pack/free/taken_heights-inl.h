@@ -25,9 +25,9 @@ constexpr int kVectors = kPositions / kLanes;
 constexpr std::size_t kRunsOfLook = 8;  // between two looks whether any height is free
 
 // The heights that are taken at eight positions, those that were from the start among them. False
-// where that are all.
+// where that are all. looked: how many of the part's runs that took.
 HWY_INLINE bool take(const HeightBits& tray, const BitPart& part, std::ptrdiff_t base,
-                     std::array<std::uint64_t, kPositions>& taken) {
+                     std::array<std::uint64_t, kPositions>& taken, std::size_t& looked) {
   std::array<const std::uint64_t*, HeightBits::kPlanes> planes{};
   for (int k = 0; k < HeightBits::kPlanes; ++k)
     planes[static_cast<std::size_t>(k)] = tray.plane(k) + base;
@@ -50,6 +50,7 @@ HWY_INLINE bool take(const HeightBits& tray, const BitPart& part, std::ptrdiff_t
     }
     Words least = heights[0];
     for (int v = 1; v < kVectors; ++v) least = hn::And(least, heights[v]);
+    looked = next;
     if (hn::AllTrue(kWords, hn::Eq(least, all))) return false;
   }
   for (int v = 0; v < kVectors; ++v) hn::StoreU(heights[v], kWords, taken.data() + v * kLanes);

@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kBand = 1;  // cells round a triangle's box in which its distance is taken at once
 constexpr int kNoTriangle = -1;
+constexpr int kSweeps = 8;
+constexpr std::int8_t kEntered = 0;  // before the first sweep, which looks at all
 
 // Of a sample, x fastest; size: samples along each axis.
 std::size_t index_of(const std::array<int, 3>& at, const std::array<int, 3>& size) {
@@ -32,20 +34,20 @@ class Closest {
     for (std::size_t i = 0; i < surface.n_triangles(); ++i)
       triangles_.push_back(surface.corners(i));
     for (std::size_t i = 0; i < triangles_.size(); ++i) enter(static_cast<int>(i));
-    for (int direction = 0; direction < 8; ++direction)
-      hand_on({(direction & 1) != 0 ? -1 : 1, (direction & 2) != 0 ? -1 : 1,
-               (direction & 4) != 0 ? -1 : 1});
+    changed_.assign(samples, kEntered);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) hand_on(sweep);
   }
 
   double distance(std::size_t sample) const { return std::sqrt(squared_[sample]); }
 
  private:
-  void offer(const std::array<int, 3>& at, std::size_t sample, int triangle) {
+  bool offer(const std::array<int, 3>& at, std::size_t sample, int triangle) {
     const double squared = squared_distance(low_ + pitch_ * Vec3(at[0], at[1], at[2]),
                                             triangles_[static_cast<std::size_t>(triangle)]);
-    if (squared >= squared_[sample]) return;
+    if (squared >= squared_[sample]) return false;
     squared_[sample] = squared;
     triangle_[sample] = triangle;
+    return true;
   }
 
   void enter(int triangle) {
@@ -66,7 +68,22 @@ class Closest {
         for (at[0] = first[0]; at[0] <= last[0]; ++at[0]) offer(at, index_of(at, size_), triangle);
   }
 
-  void hand_on(const std::array<int, 3>& step) {
+  // Once in each of the eight directions. What a neighbour offered in the last sweep that came from
+  // its side need not be tried again.
+  void hand_on(int sweep) {
+    std::array<int, 3> step{};
+    std::array<int, 3> last_from_there{};
+    std::array<std::ptrdiff_t, 3> stride{1, size_[0],
+                                         static_cast<std::ptrdiff_t>(size_[0]) * size_[1]};
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      const auto side = [k](int of_sweep) { return of_sweep >> k & 1; };
+      step[axis] = side(sweep) != 0 ? -1 : 1;
+      stride[axis] *= step[axis];
+      last_from_there[axis] = sweep - 1;
+      while (last_from_there[axis] >= 0 && side(last_from_there[axis]) != side(sweep))
+        --last_from_there[axis];
+    }
     std::array<int, 3> at{};
     const auto begin = [&](std::size_t k) { return step[k] > 0 ? 0 : size_[k] - 1; };
     const auto within = [&](std::size_t k) { return at[k] >= 0 && at[k] < size_[k]; };
@@ -76,11 +93,13 @@ class Closest {
           const std::size_t sample = index_of(at, size_);
           for (std::size_t k = 0; k < 3; ++k) {
             if (at[k] == begin(k)) continue;
-            std::array<int, 3> before = at;
-            before[k] -= step[k];
-            const int triangle = triangle_[index_of(before, size_)];
-            if (triangle != kNoTriangle && triangle != triangle_[sample])
-              offer(at, sample, triangle);
+            const auto before =
+                static_cast<std::size_t>(static_cast<std::ptrdiff_t>(sample) - stride[k]);
+            if (changed_[before] <= last_from_there[k]) continue;
+            const int triangle = triangle_[before];
+            if (triangle != kNoTriangle && triangle != triangle_[sample] &&
+                offer(at, sample, triangle))
+              changed_[sample] = static_cast<std::int8_t>(sweep);
           }
         }
   }
@@ -91,6 +110,7 @@ class Closest {
   std::array<int, 3> size_;
   std::vector<double> squared_;
   std::vector<int> triangle_;
+  std::vector<std::int8_t> changed_;  // the sweep that did last
 };
 
 }  // namespace

@@ -13,6 +13,10 @@ constexpr double kWallWeight = 9;
 const double kWallDepth = std::sqrt(kWallWeight);
 // Of a pitch: by how much distances between samples of a grid may be wrong.
 constexpr float kInterpolation = 0.6F;
+// Of work.
+constexpr std::uint64_t kStepsOfPair = 10;
+constexpr std::uint64_t kStepsOfBall = 40;
+constexpr std::uint64_t kStepsOfSample = 50;
 
 // What one part's samples meet in another's distances, or at the walls: force and torque are the
 // energy's derivatives by a translation of the part, and by a turn about the frame's origin.
@@ -21,6 +25,7 @@ struct Push {
   double deepest_mm = 0;
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
+  std::uint64_t steps = 0;
 };
 
 void add(Push& push, double weight, double lacking, const Vec3& gradient, const Vec3& at) {
@@ -40,6 +45,7 @@ Push met(const Shape& one, const Pose& at_one, const Shape& other, const Pose& a
   const auto room = static_cast<float>(room_mm);
   const float doubt = kInterpolation * static_cast<float>(distances.pitch_mm());
   Push push;
+  push.steps = kStepsOfBall * one.balls.size();
   for (const SampleBall& ball : one.balls) {
     const Vec3f centre = turn * ball.centre + shift;
     if (((centre.array() + ball.radius) < distances.low().array()).any() ||
@@ -47,6 +53,7 @@ Push met(const Shape& one, const Pose& at_one, const Shape& other, const Pose& a
       continue;
     const float there = distances.at(centre);
     if (there < DistanceGrid::kFar && there > ball.radius + room + doubt) continue;
+    push.steps += kStepsOfSample * ball.samples.size();
     for (const Vec3f& sample : ball.samples) {
       const Vec3f point = turn * sample + shift;
       Vec3f gradient;
@@ -149,6 +156,7 @@ Overlap overlap(const std::vector<const Shape*>& shapes, const std::vector<Pose>
                     rooms.pair(pair.one, pair.other));
   });
   Overlap result;
+  result.steps = kStepsOfPair * shapes.size() * shapes.size();
   result.gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * shapes.size()));
   // torque: about the part's own origin.
   const auto enter = [&](std::size_t part, const Vec3& force, const Vec3& torque) {
@@ -158,6 +166,7 @@ Overlap overlap(const std::vector<const Shape*>& shapes, const std::vector<Pose>
   };
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const Push& push = pushes[k];
+    result.steps += push.steps;
     if (push.energy <= 0) continue;
     const auto [one, other] = pairs[k];
     result.energy += push.energy;

@@ -2,6 +2,7 @@
 // of what each sample of a surface lacks of the room it should have.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "model/plate.h"
@@ -34,6 +35,7 @@ struct Overlap {
   double energy = 0;         // mm²
   double deepest_mm = 0;     // what a sample lacks most
   Eigen::VectorXd gradient;  // six a part: turn (mm at its radius), then translation
+  std::uint64_t steps = 0;   // of work (base/effort.h)
 };
 
 // box_mm: the parts are to lie within [0, box_mm], and over no wall of the plate. Poses are of the

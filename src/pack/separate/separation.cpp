@@ -21,12 +21,17 @@ constexpr double kTold_mm = 0.1;  // beyond what is asked for
 }  // namespace
 
 Separation::Separation(std::vector<const Shape*> shapes, const Vec2& base_mm, double gap_mm,
-                       std::function<bool()> is_over, Plate plate)
+                       std::function<bool()> is_over, Plate plate, Effort* effort)
     : shapes_(std::move(shapes)),
       base_mm_(base_mm),
       plate_(std::move(plate)),
       apart_mm_(std::max(gap_mm, kLeastApart_mm)),
-      is_over_(std::move(is_over)) {}
+      is_over_(std::move(is_over)),
+      effort_(effort) {}
+
+void Separation::spend(std::uint64_t steps) const {
+  if (effort_ != nullptr) effort_->spend(steps);
+}
 
 bool Separation::separate(std::vector<Pose>& poses, double height_mm, int most_steps) const {
   const Vec3 box_mm(base_mm_.x(), base_mm_.y(), height_mm);
@@ -50,7 +55,9 @@ double Separation::minimise(std::vector<Pose>& poses, const Vec3& box_mm, const 
   return descend(
              shapes_, poses,
              [&](const std::vector<Pose>& at, const Eigen::VectorXd&) {
-               return overlap(shapes_, at, box_mm, rooms, plate_);
+               Overlap here = overlap(shapes_, at, box_mm, rooms, plate_);
+               spend(here.steps);
+               return here;
              },
              {},
              [&](int steps, const Overlap& here) {
@@ -83,6 +90,7 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
           shapes_[i]->radius_mm + shapes_[j]->radius_mm + apart_mm_)
         pairs.emplace_back(i, j);
   }
+  spend(kStepsOfDistance * pairs.size());
   std::vector<double> gaps(pairs.size());
   parallel_tasks(pairs.size(), [&](std::size_t k) {
     const auto i = pairs[k].first;

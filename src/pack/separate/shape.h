@@ -26,6 +26,7 @@ struct Shape {
   double volume_mm3;
   double radius_mm;  // of a ball about the origin that holds the shape
   MovableSurface surface;
+  Mesh outside;  // of the mesh: without the walls of closed chambers, which nothing gets into
   DistanceGrid distances;
   std::vector<SampleBall> balls;
   // Points that stand out: the whole shape lies within their convex hull, or for a mesh of very

@@ -10,6 +10,7 @@
 #include "pack/exact/exact_removal.h"
 #include "pack/free/free_search.h"
 #include "pack/free/limit_search.h"
+#include "pack/free/part_shapes.h"
 #include "pack/pack.h"
 #include "pack/separate/compression.h"
 #include "unit/pack/check.h"
@@ -27,6 +28,9 @@ const Shape& random_shape(Random& random) {
   }();
   return shapes[random.below(shapes.size())];
 }
+
+// A cube of 20 mm round a closed chamber of 14 mm.
+Mesh shut_box() { return closed_mesh(fixtures::nested_cubes(20, 14)); }
 
 double point_to_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
   double best = check::point_distance(p, corner);
@@ -80,6 +84,20 @@ RC_GTEST_PROP(DistanceGrid, TellsTheDistanceToTheClosestTriangle, (std::uint64_t
 BitPart random_bits(Random& random, const BitGrid& grid) {
   return bit_part(random_shape(random), shapes::any_rotation(random), grid,
                   random.below(2) == 0 ? 0 : 1);
+}
+
+// What is thinner than a layer of the lattice is there all the same, wherever it lies in the part;
+// a plate keeps its columns, and a closed chamber has none left.
+TEST(BitPart, HoldsThinMatterAndNoClosedChamber) {
+  const Shape plate(shapes::box(Vec3(15, 15, 0.5)), 3);
+  for (const double limit_mm : {20., 50., 80., 100., 150.}) {
+    const BitGrid grid{0.4, limit_mm / 62, 100, 100};
+    const BitPart lying = bit_part(plate, Mat3::Identity(), grid, 0.025);
+    EXPECT_EQ(lying.runs.size(), static_cast<std::size_t>(lying.width * lying.depth)) << limit_mm;
+  }
+  const Shape shut(shut_box(), 3);
+  const BitPart box = bit_part(shut, Mat3::Identity(), {0.5, 0.5, 100, 100}, 0);
+  EXPECT_EQ(box.runs.size(), static_cast<std::size_t>(box.width * box.depth));
 }
 
 using Matter = std::vector<std::array<bool, kHeights>>;
@@ -157,6 +175,28 @@ RC_GTEST_PROP(Overlap, FallsAgainstItsGradient, (std::uint64_t seed)) {
   RC_ASSERT(next.energy < here.energy);
 }
 
+// Slivers have few samples, triangles that vanish none that is no number.
+TEST(Shape, SamplesByAreaAndKeepsItsMeasure) {
+  const double hair = 1e-19;
+  TriangleSoup wedge;
+  wedge.points = {{hair, 0, 0}, {0, hair, 0}, {0, 0, hair},
+                  {150, 0, 0},  {0, 0.02, 0}, {0, 0, 0.02}};
+  wedge.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                     {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  const Shape thin(closed_mesh(wedge), 20);
+  std::size_t samples = 0;
+  for (const SampleBall& ball : thin.balls) {
+    samples += ball.samples.size();
+    for (const Vec3f& sample : ball.samples) EXPECT_TRUE(sample.allFinite());
+  }
+  EXPECT_LT(samples, 200U);
+  // Where the distances reach far the grid is coarser instead of larger.
+  const Shape far(shapes::box(Vec3(20, 20, 20)), 40);
+  const Vec3f cells =
+      (far.distances.high() - far.distances.low()) / static_cast<float>(far.distances.pitch_mm());
+  EXPECT_LT(cells.maxCoeff(), 85);
+}
+
 TEST(Separation, MovesPartsApartThatOverlapALittle) {
   const Shape ball(shapes::sphere(6, 16), 3);
   const Shape cube(shapes::box(Vec3(10, 10, 10)), 3);
@@ -197,9 +237,6 @@ TEST(Compression, GoesBackToTheLastLayoutThatWasAccepted) {
 
 // A ball under an upturned cup comes out after it, a cube in the clasp of a U is drawn out of it,
 // and a ball in a closed box never comes out.
-// A cube of 20 mm round a closed chamber of 14 mm.
-Mesh shut_box() { return closed_mesh(fixtures::nested_cubes(20, 14)); }
-
 TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   const auto at = [](const Mesh& mesh, const Vec3& low) {
     return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
@@ -234,6 +271,83 @@ TEST(ExactDisassembly, FindsOrderPathsAndWhatIsStuck) {
   const ExactDisassembly none = exact_disassembly(
       {at(shut_box(), Vec3(5, 5, 0)), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, base_mm, {});
   EXPECT_EQ(none.stuck, (std::vector<int>{0, 1}));
+}
+
+// A plan that was made for other poses may lead through the plate or over the side.
+TEST(ExactRemoval, PathsStayOverTheBase) {
+  const Mesh box = shapes::box(Vec3(10, 10, 10));
+  const Vec3 low(2, 2, 0.3);
+  const Mesh cube =
+      transformed(box, Pose(Eigen::Translation3d(Vec3(low - bounding_box(box).min()))));
+  const Progress progress;
+  const StandingParts alone({cube}, progress);
+  const Vec2 base_mm(20, 20);
+  const auto stays = [&](const std::vector<Vec3>& path) {
+    return stay_over_base(alone, {path}, base_mm);
+  };
+  EXPECT_TRUE(stays({}));
+  EXPECT_TRUE(stays({{0, 0, -0.2}, {8, 0, 0}, {-10, 0, 5}}));
+  EXPECT_FALSE(stays({{0, 0, -0.5}, {0, 0, 1}}));
+  EXPECT_FALSE(stays({{8.5, 0, 0}, {-8.5, 0, 0}}));
+  EXPECT_FALSE(stays({{0, -2.5, 1}}));
+}
+
+TEST(ExactDisassembly, EndsWhenItIsToldTo) {
+  const auto at = [](const Mesh& mesh, const Vec3& low) {
+    return transformed(mesh, Pose(Eigen::Translation3d(Vec3(low - bounding_box(mesh).min()))));
+  };
+  const Progress progress;
+  const StandingParts shut(
+      {at(shut_box(), Vec3(5, 5, 0)), at(shapes::sphere(4, 12), Vec3(11, 11, 5))}, progress);
+  int looks = 0;
+  const ExactDisassembly plan =
+      exact_disassembly(shut, Vec2(60, 60), Plate(), [&looks] { return ++looks > 20; });
+  EXPECT_EQ(plan.stuck.size(), 2U);
+  EXPECT_LT(looks, 30);
+}
+
+TEST(LimitSearch, EndsWhileItStillDraws) {
+  std::vector<Shape> made;
+  for (int i = 0; i < 6; ++i) made.emplace_back(shapes::box(Vec3(6 + i, 5, 4)), 3);
+  FreeParts parts;
+  std::vector<Pose> start(made.size(), Pose::Identity());
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    parts.shapes.push_back(&made[i]);
+    start[i].translation() = Vec3(8, 8, 3 + 6. * static_cast<double>(i));
+  }
+  Random random(1);
+  for (int i = 0; i < 24; ++i) parts.rotations.push_back(shapes::any_rotation(random));
+  std::atomic<int> looks = 0;
+  Effort effort;
+  LimitSearch search(
+      parts, Vec2(20, 20), Plate(), 0.5, start, 40, 1, [&looks] { return ++looks > 5; }, effort);
+  EXPECT_FALSE(search.next([] { return false; }));
+  EXPECT_LT(looks, 100);
+}
+
+TEST(PartShapes, HearThatTheyAreCancelled) {
+  const PackProblem problem = shapes::problem_of({shapes::sphere(6, 12)}, Vec3(20, 20, 20));
+  std::atomic<bool> cancelled = false;
+  Pace pace(Progress({}, &cancelled), 0);
+  cancelled = true;
+  EXPECT_THROW(shapes_of(problem, {{{0}, Pose::Identity(), 0}}, pace), Error);
+}
+
+// One part above the other.
+Packing stacked(const PackProblem& problem) {
+  Packing packing;
+  double top_mm = 0;
+  for (int i = 0; i < static_cast<int>(problem.items.size()); ++i) {
+    PlacedPart part{{i}, Pose::Identity(), 0};
+    const Box3 box = bounding_box(part_mesh(problem, part));
+    part.pose.translation() = Vec3(0, 0, top_mm) - box.min();
+    top_mm += box.sizes().z() + problem.gap_mm;
+    packing.parts.push_back(part);
+    packing.removal_order.insert(packing.removal_order.begin(), i);
+  }
+  packing.removal_paths.resize(packing.parts.size());
+  measure(problem, packing);
+  return packing;
 }
 
 // Every tray keeps what pack.h promises, and is no higher than without the search.
@@ -276,7 +390,20 @@ TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
     EXPECT_EQ(one.parts[i].pose.matrix(), two.parts[i].pose.matrix());
 }
 
-// The chamber is the lowest place that there is, again and again.
+// A search that always finds something better ends by the work that it did, which grows with the
+// number of parts and not with what remains to be found.
+TEST(FreeSearch, EndsWithoutABudgetHoweverManyPartsThereAre) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 40; ++i) meshes.push_back(shapes::box(Vec3(7 + 0.05 * i, 6, 4)));
+  PackProblem problem = shapes::low_problem(std::move(meshes), Vec3(40, 40, 300), 0.4);
+  problem.tabu_patience = 2;
+  Pace pace({}, 0);
+  Effort effort;
+  EXPECT_TRUE(searched_freely(problem, stacked(problem), pace, effort));
+  EXPECT_LT(effort.spent(), 1'500'000'000U);
+}
+
+// The chamber would be the lowest place that there is.
 TEST(FreeSearch, EndsWhereTheLowestPlaceHasNoWayOut) {
   const PackProblem problem =
       shapes::low_problem({shut_box(), shapes::box(Vec3(6, 6, 6))}, Vec3(22, 22, 40), 0);

@@ -1,7 +1,7 @@
-#include "pack/free/tray_shapes.h"
+#include "pack/free/part_shapes.h"
 
 #include <algorithm>
-#include <limits>
+#include <atomic>
 
 #include "base/parallel.h"
 #include "pack/exact/exact_figures.h"
@@ -14,10 +14,13 @@ constexpr double kReach_mm = 2.5;  // of the distances, beyond what parts keep a
 
 }  // namespace
 
-TrayShapes shapes_of(const PackProblem& problem, const std::vector<PlacedPart>& parts) {
+std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
+                                                    const std::vector<PlacedPart>& parts,
+                                                    Pace& pace) {
   std::vector<Mesh> meshes;
   std::vector<std::size_t> first_of(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    pace.tick();
     meshes.push_back(part_mesh(problem, parts[i]));
     first_of[i] = i;
     for (std::size_t j = 0; j < i && first_of[i] == i; ++j)
@@ -26,11 +29,17 @@ TrayShapes shapes_of(const PackProblem& problem, const std::vector<PlacedPart>& 
         first_of[i] = j;
   }
   std::vector<std::shared_ptr<const Shape>> shapes(parts.size());
+  std::atomic<bool> are_whole = true;
   parallel_tasks(parts.size(), [&](std::size_t i) {
-    if (first_of[i] == i)
+    if (first_of[i] != i || !are_whole) return;
+    pace.tick();
+    if (pace.passed() >= 1)
+      are_whole = false;
+    else
       shapes[i] = std::make_shared<const Shape>(
           meshes[i], std::max(problem.gap_mm, kLeastApart_mm) + kReach_mm);
   });
+  if (!are_whole) return {};
   for (std::size_t i = 0; i < parts.size(); ++i) shapes[i] = shapes[first_of[i]];
   return shapes;
 }
@@ -39,11 +48,8 @@ Pose own_frame(const Pose& pose, const Shape& shape) {
   return pose * Eigen::Translation3d(shape.centre);
 }
 
-void let_down(std::vector<Pose>& poses, const TrayShapes& shapes) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    lowest = std::min(lowest, shapes[i]->surface.box(poses[i]).min().z());
-  for (Pose& pose : poses) pose.translation().z() -= lowest;
+Pose part_frame(const Pose& pose, const Shape& shape) {
+  return pose * Eigen::Translation3d(-shape.centre);
 }
 
 }  // namespace packmerger

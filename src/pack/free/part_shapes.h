@@ -1,0 +1,23 @@
+// The shapes of a tray's parts.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "model/packing.h"
+#include "pack/search/search.h"
+#include "pack/separate/shape.h"
+
+namespace packmerger {
+
+// By part. Meshes that are the same to the last bit, as copies are, share a shape. Empty where the
+// pace's time is up before they are made.
+std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
+                                                    const std::vector<PlacedPart>& parts,
+                                                    Pace& pace);
+
+// Of the shape's frame, where the part's is at the pose; and back.
+Pose own_frame(const Pose& pose, const Shape& shape);
+Pose part_frame(const Pose& pose, const Shape& shape);
+
+}  // namespace packmerger
