@@ -114,6 +114,31 @@ TEST(Premerge, TurnsABarUprightWhereThePackerMay) {
   EXPECT_EQ(parts_of_bar({78, 78, 10}, radians(90)), 2);
 }
 
+TEST(Premerge, LeavesNoPartThatHasNoRoomBetweenThePlatesWalls) {
+  ShapeSettings settings;
+  settings.min_volume_fraction = 0.6;
+  const auto parts_of_bar = [&](const Plate& plate) {
+    TetMesh mesh = fixtures::solid_box({20, 2, 2}, 5);  // 100×10×10
+    Warnings warnings;
+    const BuildVolume build{Vec3(120, 120, 20), radians(90), plate};
+    return premerge(mesh, sliced(mesh, {50, 100}), settings, build, warnings, Progress()).count;
+  };
+  const auto disc = [](double radius) {
+    Polygon corners;
+    for (int i = 0; i < 72; ++i) {
+      const double angle = radians(5.0 * i);
+      corners.emplace_back(60 + radius * std::cos(angle), 60 + radius * std::sin(angle));
+    }
+    return corners;
+  };
+  EXPECT_EQ(parts_of_bar({}), 1);
+  EXPECT_EQ(parts_of_bar(Plate(disc(51), {})), 1);
+  EXPECT_EQ(parts_of_bar(Plate(disc(49), {})), 2);
+  // Strips that leave 11, or 9 mm of the plate.
+  EXPECT_EQ(parts_of_bar(Plate({}, {{{11, -1}, {121, -1}, {121, 121}, {11, 121}}})), 1);
+  EXPECT_EQ(parts_of_bar(Plate({}, {{{9, -1}, {121, -1}, {121, 121}, {9, 121}}})), 2);
+}
+
 TEST(Premerge, SmallestCrossSectionFirstThenSmallestVolumeIntoSmallestNeighbour) {
   ShapeSettings settings;
   settings.min_glue_area_mm2 = 50;
