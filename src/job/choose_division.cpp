@@ -18,6 +18,7 @@ namespace packmerger {
 namespace {
 
 constexpr std::size_t kMostPlans = 4;  // that are cut and packed
+constexpr std::size_t kFinalists = 2;  // of those, and the clusters, that are searched
 constexpr double kAboutEqual = 0.02;   // of the least packed cost
 constexpr double kLeastPrice = 0.005;  // of V_o: what a part more must save in support at least
 constexpr double kMostPrice = 0.05;    // and at most
@@ -25,6 +26,8 @@ constexpr double kMostPrice = 0.05;    // and at most
 struct Candidate {
   std::shared_ptr<Divided> model;
   Warnings warnings;
+  bool is_rough = false;                                  // clusters that are not smoothed yet
+  std::unique_ptr<TrialPacking> trial;                    // none where some part fits no tray
   double cost = std::numeric_limits<double>::infinity();  // packed
 };
 
@@ -44,39 +47,56 @@ double part_price_mm3(const Profile& profile, double volume_mm3) {
   return of_support > 0 ? std::clamp(of_a_part / of_support, least, most) : least;
 }
 
-// A short packing of this model alone, the same on any machine: no clock ends it.
-double packed_cost(const std::shared_ptr<const Divided>& model, const Profile& profile,
-                   std::uint64_t seed, const Progress& progress) {
+// A short packing of this model alone, the same on any machine: no clock ends it. Empty where some
+// part fits no tray: the model may still fit divided another way, and where nothing fits the packer
+// says so better.
+std::unique_ptr<TrialPacking> trial_of(const std::shared_ptr<const Divided>& model,
+                                       const Profile& profile, std::uint64_t seed,
+                                       const Progress& progress) {
   PackProblem problem = packing_problem({model}, profile, seed, 0);
   problem.edges.clear();
   try {
-    return trial_cost(problem, progress);
+    return std::make_unique<TrialPacking>(problem, progress);
   } catch (const Error& error) {
-    // It may still fit another way, and where nothing fits the packer says so better.
     if (error.fault() != Fault::kBadInput) throw;
-    return std::numeric_limits<double>::infinity();
+    return nullptr;
   }
 }
 
-// What a plan makes of the whole model; without one, what the paper's clusters do.
+// What a plan makes of the whole model; without one, what the paper's clusters do. Packed greedily.
 Candidate candidate_of(const Divided& whole, const CutPlan* plan, const Profile& profile,
                        std::uint64_t seed, const Progress& progress) {
   Candidate made;
   made.model = std::make_shared<Divided>(whole);
   if (plan == nullptr) {
-    divide_by_clusters(*made.model, profile, seed, made.warnings, progress);
+    cut_into_clusters(*made.model, profile, seed, progress);
+    made.is_rough = true;
   } else {
     const Segments cut = cut_as_planned(made.model->tets, *plan, progress);
     made.model->clusters = cut.count;
     made.model->segments = premerge(made.model->tets, cut, profile.shape, build_volume(profile),
                                     made.warnings, progress);
   }
-  made.cost = packed_cost(made.model, profile, seed, progress);
+  made.trial = trial_of(made.model, profile, seed, progress);
+  if (made.trial) made.cost = made.trial->greedy_cost();
   return made;
 }
 
-std::vector<Candidate> candidates_of(const Divided& whole, const Profile& profile,
-                                     std::uint64_t seed, const Progress& progress) {
+// Divided and packed as it would be kept.
+void search_further(Candidate& candidate, const Profile& profile, std::uint64_t seed,
+                    const Progress& progress) {
+  if (candidate.is_rough) {
+    smooth_clusters(*candidate.model, profile, candidate.warnings, progress);
+    candidate.is_rough = false;
+    candidate.trial = trial_of(candidate.model, profile, seed, progress);
+  }
+  candidate.cost =
+      candidate.trial ? candidate.trial->searched_cost() : std::numeric_limits<double>::infinity();
+}
+
+// The best by greedy layouts, searched.
+std::vector<Candidate> finalists(const Divided& whole, const Profile& profile, std::uint64_t seed,
+                                 const Progress& progress) {
   CutSearch search;
   search.support_angle = radians(profile.support_angle_deg);
   const double volume_mm3 = total_volume_mm3(whole.tets);
@@ -92,8 +112,14 @@ std::vector<Candidate> candidates_of(const Divided& whole, const Profile& profil
   parallel_tasks(candidates.size(), [&](std::size_t i) {
     candidates[i] = candidate_of(whole, i == 0 ? nullptr : &plans[i - 1], profile, seed, silent);
     progress.report("choosing a division",
-                    static_cast<double>(++ready) / static_cast<double>(candidates.size()));
+                    0.8 * static_cast<double>(++ready) / static_cast<double>(candidates.size()));
   });
+  // The order by greedy layouts is near that by searched ones, at a third of the time.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  candidates.resize(std::min(candidates.size(), kFinalists));
+  parallel_tasks(candidates.size(),
+                 [&](std::size_t i) { search_further(candidates[i], profile, seed, silent); });
   return candidates;
 }
 
@@ -104,7 +130,7 @@ Divided choose_division(const Mesh& surface, const Profile& profile, bool hollow
   if (profile.shape.segmentation == Segmentation::kPaper)
     return divide(surface, profile, hollow_it, seed, warnings, progress);
   const Divided whole = undivided(surface, profile, hollow_it, warnings, progress);
-  std::vector<Candidate> candidates = candidates_of(whole, profile, seed, progress);
+  std::vector<Candidate> candidates = finalists(whole, profile, seed, progress);
   double least = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : candidates) least = std::min(least, candidate.cost);
   const Candidate* best = &candidates.front();

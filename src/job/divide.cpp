@@ -19,20 +19,30 @@ Divided undivided(const Mesh& surface, const Profile& profile, bool hollow_it, W
   return model;
 }
 
-void divide_by_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
-                        Warnings& warnings, const Progress& progress) {
+void cut_into_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
+                       const Progress& progress) {
   const Segments clusters = segment(model.tets, profile.shape, seed, progress);
   model.clusters = clusters.count;
-
   // Smoothing straightens cuts, which may bring a cross-section below the limit, so merging has the
   // last word, and what it says then is what the user is told.
-  const BuildVolume build = build_volume(profile);
   Warnings before_smoothing;
-  model.segments = premerge(model.tets, clusters, profile.shape, build, before_smoothing, progress);
+  model.segments = premerge(model.tets, clusters, profile.shape, build_volume(profile),
+                            before_smoothing, progress);
+}
+
+void smooth_clusters(Divided& model, const Profile& profile, Warnings& warnings,
+                     const Progress& progress) {
   const CutRoughness roughness = smooth_cuts(model.tets, model.segments, profile.shape, progress);
-  model.segments = premerge(model.tets, model.segments, profile.shape, build, warnings, progress);
+  model.segments = premerge(model.tets, model.segments, profile.shape, build_volume(profile),
+                            warnings, progress);
   model.roughness_before = roughness.before_rad;
   model.roughness_after = roughness.after_rad;
+}
+
+void divide_by_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
+                        Warnings& warnings, const Progress& progress) {
+  cut_into_clusters(model, profile, seed, progress);
+  smooth_clusters(model, profile, warnings, progress);
 }
 
 Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,

@@ -29,12 +29,20 @@ struct Divided {
 Divided undivided(const Mesh& surface, const Profile& profile, bool hollow_it, Warnings& warnings,
                   const Progress& progress);
 
-// The paper's clusters, pre-merged and smoothed. Same surface, settings and seed: the same result
-// on any number of threads.
+// The paper's clusters, pre-merged. Same surface, settings and seed: the same result on any number
+// of threads.
+void cut_into_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
+                       const Progress& progress);
+
+// Smooths the cuts between them, and pre-merges what is too small after that.
+void smooth_clusters(Divided& model, const Profile& profile, Warnings& warnings,
+                     const Progress& progress);
+
+// Both.
 void divide_by_clusters(Divided& model, const Profile& profile, std::uint64_t seed,
                         Warnings& warnings, const Progress& progress);
 
-// Both.
+// All of it.
 Divided divide(const Mesh& surface, const Profile& profile, bool hollow_it, std::uint64_t seed,
                Warnings& warnings, const Progress& progress);
 

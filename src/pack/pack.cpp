@@ -283,17 +283,43 @@ std::size_t best_of(const std::vector<Packing>& packings, std::size_t most_parts
 
 }  // namespace
 
-double trial_cost(const PackProblem& problem, const Progress& progress) {
-  check_settings(problem);
-  const Progress silent({}, progress.cancelled());
-  Pace pace(silent, 0);
-  PackProblem trial = problem;
-  trial.rotation_step = std::max(problem.rotation_step, kTrialRotation);
-  trial.tabu_patience = std::min(problem.tabu_patience, kTrialPatience);
-  trial.tabu_restarts = 0;
-  Workshop searching(trial, search_grid(trial), pace);
-  make_items(trial, searching.maker);
-  return search(trial, searching.layouter, searching.maker, pace).front().cost;
+struct TrialPacking::Bench {
+  Bench(const PackProblem& problem, const Progress& progress)
+      : trial(shortened(problem)),
+        silent({}, progress.cancelled()),
+        pace(silent, 0),
+        searching(trial, search_grid(trial), pace) {
+    make_items(trial, searching.maker);
+  }
+
+  static PackProblem shortened(PackProblem problem) {
+    check_settings(problem);
+    problem.rotation_step = std::max(problem.rotation_step, kTrialRotation);
+    problem.tabu_patience = std::min(problem.tabu_patience, kTrialPatience);
+    problem.tabu_restarts = 0;
+    return problem;
+  }
+
+  PackProblem trial;
+  Progress silent;
+  Pace pace;
+  Workshop searching;
+};
+
+TrialPacking::TrialPacking(const PackProblem& problem, const Progress& progress)
+    : bench_(std::make_unique<Bench>(problem, progress)) {}
+
+TrialPacking::~TrialPacking() = default;
+
+double TrialPacking::greedy_cost() {
+  return first_layout(bench_->trial, bench_->searching.layouter, bench_->searching.maker).cost;
+}
+
+double TrialPacking::searched_cost() {
+  Bench& bench = *bench_;
+  return search(bench.trial, bench.searching.layouter, bench.searching.maker, bench.pace)
+      .front()
+      .cost;
 }
 
 Packing pack(const PackProblem& problem, const Progress& progress) {

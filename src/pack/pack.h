@@ -2,6 +2,8 @@
 // them merged, at little cost.
 #pragma once
 
+#include <memory>
+
 #include "base/progress.h"
 #include "model/packing.h"
 
@@ -23,8 +25,24 @@ namespace packmerger {
 // Error{kUsage} for settings without sense; Error{kInterrupted} when cancelled.
 Packing pack(const PackProblem& problem, const Progress& progress);
 
-// The cost of the best layout that a short search finds, by the samples it sees: enough to tell
-// which of several divisions of a model packs better, in a fraction of the time. Throws as pack().
-double trial_cost(const PackProblem& problem, const Progress& progress);
+// A short packing, enough to tell which of several divisions of a model packs better in a fraction
+// of the time. Costs are those of layouts by the samples that a search sees. Throws as pack().
+class TrialPacking {
+ public:
+  // Both must outlive it.
+  TrialPacking(const PackProblem& problem, const Progress& progress);
+  ~TrialPacking();
+  TrialPacking(const TrialPacking&) = delete;
+  TrialPacking& operator=(const TrialPacking&) = delete;
+
+  // Of the layout with which a search begins.
+  double greedy_cost();
+  // Of the best one that a short search finds. What was drawn for the other is used again.
+  double searched_cost();
+
+ private:
+  struct Bench;
+  std::unique_ptr<Bench> bench_;
+};
 
 }  // namespace packmerger

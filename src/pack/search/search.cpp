@@ -36,6 +36,19 @@ std::optional<std::size_t> cheapest(const std::vector<std::optional<Layout>>& la
   return best;
 }
 
+// The largest parts first, or in any order, each where it is cheapest.
+Layout greedy(const Layouter& layouter, Moves& moves, Random& random) {
+  const RotationChoice good = [&moves](const Part& part) {
+    return moves.good_rotations(part, kStartWays);
+  };
+  const std::vector<Draft> drafts{moves.start(true, random), moves.start(false, random)};
+  std::vector<Layout> layouts(drafts.size());
+  parallel_tasks(drafts.size(), [&](std::size_t i) {
+    layouts[i] = *layouter.carried_out(drafts[i], good, kInfinity);
+  });
+  return std::move(layouts[is_better(layouts[1], layouts[0]) ? 1 : 0]);
+}
+
 class TabuSearch {
  public:
   TabuSearch(const PackProblem& problem, const Layouter& layouter, PartMaker& maker, Pace& pace,
@@ -48,7 +61,7 @@ class TabuSearch {
         random_(problem.seed) {}
 
   std::vector<Layout> run() {
-    Layout current = first_layout();
+    Layout current = greedy(layouter_, moves_, random_);
     improve(current);
     keep(current);
     int kicks = 0;
@@ -75,18 +88,6 @@ class TabuSearch {
 
   void progress_of(int kicks) {
     pace_.reached(std::max(pace_.passed(), kSearchShare * kicks / (problem_.tabu_restarts + 1)));
-  }
-
-  Layout first_layout() {
-    const RotationChoice good = [this](const Part& part) {
-      return moves_.good_rotations(part, kStartWays);
-    };
-    const std::vector<Draft> drafts{moves_.start(true, random_), moves_.start(false, random_)};
-    std::vector<Layout> layouts(drafts.size());
-    parallel_tasks(drafts.size(), [&](std::size_t i) {
-      layouts[i] = *layouter_.carried_out(drafts[i], good, kInfinity);
-    });
-    return std::move(layouts[is_better(layouts[1], layouts[0]) ? 1 : 0]);
   }
 
   // Of another order than any before.
@@ -262,6 +263,12 @@ double Pace::passed() const {
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
                            Pace& pace, const OnBetter& on_better) {
   return TabuSearch(problem, layouter, maker, pace, on_better).run();
+}
+
+Layout first_layout(const PackProblem& problem, const Layouter& layouter, PartMaker& maker) {
+  Moves moves(problem, maker);
+  Random random(problem.seed);
+  return greedy(layouter, moves, random);
 }
 
 }  // namespace packmerger

@@ -60,4 +60,7 @@ using OnBetter = std::function<void(double cost)>;
 std::vector<Layout> search(const PackProblem& problem, const Layouter& layouter, PartMaker& maker,
                            Pace& pace, const OnBetter& on_better = {});
 
+// What such a search begins with: the better of two, of which one takes the largest parts first.
+Layout first_layout(const PackProblem& problem, const Layouter& layouter, PartMaker& maker);
+
 }  // namespace packmerger

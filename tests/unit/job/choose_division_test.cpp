@@ -32,7 +32,7 @@ double packed(const Divided& divided, const Profile& profile, std::uint64_t seed
   PackProblem problem =
       packing_problem({std::make_shared<const Divided>(divided)}, profile, seed, 0);
   problem.edges.clear();
-  return trial_cost(problem, {});
+  return TrialPacking(problem, {}).searched_cost();
 }
 
 TEST(ChooseDivision, IsNoDearerThanTheClustersByMoreThanItMayGiveForFewerParts) {
@@ -53,7 +53,8 @@ TEST(ChooseDivision, KeepsAllMatter) {
     EXPECT_GT(volume, 0);
     sum += volume;
   }
-  EXPECT_NEAR(sum, best.shell.volume_mm3, 1e-5 * sum);
+  // Points up to 0.02 mm beside a cut are moved onto it, those of the surface, too.
+  EXPECT_NEAR(sum, best.shell.volume_mm3, 5e-5 * sum);
 }
 
 TEST(ChooseDivision, IsTheSameOnOneThreadAndOnTwo) {
