@@ -22,6 +22,7 @@ struct Flood {
 };
 constexpr std::array<Flood, 3> kFloods{{{0.5, 300}, {2, 300}, {0.5, 1500}}};
 constexpr double kLook_mm = 0.25;                 // between two looks along a step
+constexpr double kTold = 3;                       // steps: of the room round a place
 constexpr double kRoom_mm = 1.2 * kLeastRoom_mm;  // at the places that are looked at
 constexpr std::size_t kPlacesOfLift = 40;  // between two looks whether it can be lifted from here
 
@@ -43,6 +44,7 @@ class Dismantler {
       return parts_.box(a).max().z() > parts_.box(b).max().z();
     });
     plan_.paths.resize(there_.size());
+    blockers_.resize(there_.size());
     find_who_is_under_whom();
   }
 
@@ -58,7 +60,11 @@ class Dismantler {
   struct Place {
     Lattice at{};
     int parent = -1;
+    double room_mm = 0;  // to the other parts, at least
   };
+
+  // What was in a part's way in a search for its path.
+  using Blockers = std::set<int>;
 
   bool is_over() const { return is_over_ && is_over_(); }
 
@@ -90,9 +96,12 @@ class Dismantler {
   }
 
   bool lead_one_out() {
-    for (const Flood& flood : kFloods)
+    for (std::size_t k = 0; k < kFloods.size(); ++k)
       for (const int part : there_) {
-        auto path = path_of(part, flood);
+        auto& blockers = blockers_[static_cast<std::size_t>(part)][k];
+        if (are_there(blockers)) continue;
+        blockers.emplace();
+        auto path = path_of(part, kFloods[k], *blockers);
         if (!path) continue;
         plan_.paths[static_cast<std::size_t>(part)] = std::move(*path);
         take_out(part);
@@ -101,33 +110,69 @@ class Dismantler {
     return false;
   }
 
-  bool comes_off(int part, const Vec3& moved) const {
+  // A search that failed fails again while everything that was in its way is there.
+  bool are_there(const std::optional<Blockers>& blockers) const {
+    return blockers && std::all_of(blockers->begin(), blockers->end(), [this](int other) {
+             return std::find(there_.begin(), there_.end(), other) != there_.end();
+           });
+  }
+
+  static bool is_in_the_way(int other, Blockers& blockers) {
+    blockers.insert(other);
+    return true;
+  }
+
+  bool comes_off(int part, const Vec3& moved, Blockers& blockers) const {
     return std::none_of(there_.begin(), there_.end(), [&](int other) {
-      return other != part && parts_.is_under(part, moved, other);
+      return other != part && parts_.is_under(part, moved, other) && is_in_the_way(other, blockers);
     });
   }
 
-  bool is_free(int part, const Vec3& moved) const {
-    if (!is_over_base(parts_.box(part), moved, base_mm_)) return false;
+  // To the other parts; told up to `enough`, mm.
+  double room_mm(int part, const Vec3& moved, double enough) const {
     const Box3 there = parts_.box(part).translated(moved);
-    if (!plate_.surely_clear(there) &&
-        plate_.breach_mm(parts_.mesh(part), Pose(Eigen::Translation3d(moved))) > kWallTolerance_mm)
-      return false;
+    double room = enough;
+    for (const int other : there_)
+      if (other != part && there.exteriorDistance(parts_.box(other)) < room)
+        room = parts_.distance_mm(part, moved, other, room);
+    return room;
+  }
+
+  // Whether a step stays over the base and clear of the plate's walls.
+  bool is_over_plate(int part, const Vec3& from, const Vec3& to) const {
+    if (!is_over_base(parts_.box(part), to, base_mm_)) return false;
+    Box3 swept = parts_.box(part).translated(from);
+    swept.extend(parts_.box(part).translated(to));
+    return plate_.surely_clear(swept) || all_looks(from, to, [&](const Vec3& moved) {
+             return plate_.breach_mm(parts_.mesh(part), Pose(Eigen::Translation3d(moved))) <=
+                    kWallTolerance_mm;
+           });
+  }
+
+  bool is_free(int part, const Vec3& moved, Blockers& blockers) const {
+    const Box3 there = parts_.box(part).translated(moved);
     return std::none_of(there_.begin(), there_.end(), [&](int other) {
       return other != part && there.exteriorDistance(parts_.box(other)) < kRoom_mm &&
-             parts_.distance_mm(part, moved, other, kRoom_mm) < kRoom_mm;
+             parts_.distance_mm(part, moved, other, kRoom_mm) < kRoom_mm &&
+             is_in_the_way(other, blockers);
     });
   }
 
-  bool is_free_between(int part, const Vec3& from, const Vec3& to) const {
+  bool is_free_between(int part, const Vec3& from, const Vec3& to, Blockers& blockers) const {
+    return all_looks(from, to, [&](const Vec3& moved) { return is_free(part, moved, blockers); });
+  }
+
+  static bool all_looks(const Vec3& from, const Vec3& to,
+                        const std::function<bool(const Vec3& moved)>& is_good) {
     const int looks = static_cast<int>(std::lround((to - from).norm() / kLook_mm));
     for (int look = 1; look <= looks; ++look)
-      if (!is_free(part, from + (to - from) * (static_cast<double>(look) / looks))) return false;
+      if (!is_good(from + (to - from) * (static_cast<double>(look) / looks))) return false;
     return true;
   }
 
   // Best first: the highest place, of several the one that was found first.
-  std::optional<std::vector<Vec3>> path_of(int part, const Flood& flood) {
+  std::optional<std::vector<Vec3>> path_of(int part, const Flood& flood, Blockers& blockers) {
+    const double near_mm = flood.step_mm + kRoom_mm;
     std::vector<Place> places{{}};
     std::set<Lattice> seen{Lattice{}};
     using Open = std::pair<int, int>;  // height, and less the index of the place
@@ -142,16 +187,22 @@ class Dismantler {
       const Lattice at = places[static_cast<std::size_t>(index)].at;
       if (at[2] > highest || looked % kPlacesOfLift == 0) {
         highest = std::max(highest, at[2]);
-        if (comes_off(part, moved_mm(at, flood))) return swept(part, flood, places, index);
+        if (comes_off(part, moved_mm(at, flood), blockers))
+          return swept(part, flood, places, index, blockers);
       }
+      double room = places[static_cast<std::size_t>(index)].room_mm;
+      if (room < near_mm) room = room_mm(part, moved_mm(at, flood), kTold * flood.step_mm);
       for (std::size_t axis = 0; axis < 3; ++axis)
         for (const int sign : {1, -1}) {
           Lattice next = at;
           next[axis] += sign;
           if (!seen.insert(next).second) continue;
-          if (!is_free_between(part, moved_mm(at, flood), moved_mm(next, flood))) continue;
+          const Vec3 end = moved_mm(next, flood);
+          if (!is_over_plate(part, moved_mm(at, flood), end)) continue;
+          if (room < near_mm && !is_free_between(part, moved_mm(at, flood), end, blockers))
+            continue;
           open.push({next[2], -static_cast<int>(places.size())});
-          places.push_back({next, index});
+          places.push_back({next, index, room - flood.step_mm});
         }
     }
     return std::nullopt;
@@ -159,7 +210,8 @@ class Dismantler {
 
   // The steps to a place, where nothing is met between the places that were looked at either.
   std::optional<std::vector<Vec3>> swept(int part, const Flood& flood,
-                                         const std::vector<Place>& places, int end) const {
+                                         const std::vector<Place>& places, int end,
+                                         Blockers& blockers) const {
     std::vector<Vec3> steps;
     for (int at = end; places[static_cast<std::size_t>(at)].parent >= 0;) {
       const Place& here = places[static_cast<std::size_t>(at)];
@@ -174,7 +226,10 @@ class Dismantler {
     std::reverse(steps.begin(), steps.end());
     std::vector<int> others = there_;
     others.erase(std::find(others.begin(), others.end(), part));
-    if (parts_.met_on_path(part, others, steps)) return std::nullopt;
+    if (const auto other = parts_.met_on_path(part, others, steps)) {
+      is_in_the_way(*other, blockers);
+      return std::nullopt;
+    }
     return steps;
   }
 
@@ -182,6 +237,8 @@ class Dismantler {
   Vec2 base_mm_;
   const Plate& plate_;
   const std::function<bool()>& is_over_;
+  // By part: what was in the way of the searches that failed.
+  std::vector<std::array<std::optional<Blockers>, kFloods.size()>> blockers_;
   std::vector<std::vector<char>> under_;  // [i][j]: i cannot be lifted before j
   std::vector<int> there_;                // the highest first
   ExactDisassembly plan_;
@@ -192,6 +249,17 @@ class Dismantler {
 ExactDisassembly exact_disassembly(const StandingParts& parts, const Vec2& base_mm,
                                    const Plate& plate, const std::function<bool()>& is_over) {
   return Dismantler(parts, base_mm, plate, is_over).run();
+}
+
+ExactDisassembly renewed(const ExactDisassembly& known, const StandingParts& parts,
+                         const Vec2& base_mm, const Plate& plate,
+                         const std::function<bool()>& is_over) {
+  const bool is_lifting = std::all_of(known.paths.begin(), known.paths.end(),
+                                      [](const auto& path) { return path.empty(); });
+  const bool holds = !known.order.empty() && (plate.is_whole() || is_lifting) &&
+                     stay_over_base(parts, known.paths, base_mm) &&
+                     !first_obstacle(parts, known.order, known.paths);
+  return holds ? known : exact_disassembly(parts, base_mm, plate, is_over);
 }
 
 ExactDisassembly exact_disassembly(const std::vector<Mesh>& parts, const Vec2& base_mm,

@@ -17,7 +17,7 @@ double least_gap_mm(const std::vector<Mesh>& parts,
                     double enough = std::numeric_limits<double>::infinity());
 
 // Work (base/effort.h) that a distance of two surfaces is counted as, on average.
-inline constexpr std::uint64_t kStepsOfDistance = 20'000;
+inline constexpr std::uint64_t kStepsOfDistance = 40'000;
 
 // A closed surface that is looked at in several poses.
 class MovableSurface {

@@ -24,7 +24,8 @@ constexpr double kLastTurn = 0.98;           // of the time: none begins after i
 constexpr double kStepsOfPatience = 3e8;  // of all trays
 constexpr double kStepsOfPart = 2e6;
 constexpr double kStepsOfSecond = 1e9;  // of a budget
-constexpr double kProofShare = 0.15;    // of all the work, that looking for ways out may take
+constexpr double kProofShare = 0.8;     // of all the work, that looking for ways out may take
+constexpr double kRoomForProof = 0.1;   // of the time, at most, that is left for the last one
 constexpr int kSeparationSteps = 150;
 constexpr double kRaise = 0.012;  // of the height, where separation found no room
 constexpr double kMostRaised = 0.05;
@@ -204,7 +205,7 @@ class FreeSearch {
     stuck = plan.stuck;
     const bool is_kept = stuck.empty() && least_gap_mm(placed, problem_.gap_mm + kGapTold_mm) >=
                                               problem_.gap_mm - kGapTolerance_mm;
-    last_proof_ = std::min(kProofShare, passed() - began);
+    last_proof_ = std::min(kRoomForProof, passed() - began);
     if (!is_kept) return false;
     plan_ = std::move(plan);
     parts_ = std::move(parts);
@@ -213,13 +214,8 @@ class FreeSearch {
     return true;
   }
 
-  // The last one, where that will do.
   ExactDisassembly plan_of(const StandingParts& standing) const {
-    const Vec2 base_mm = problem_.build_mm.head<2>();
-    if (!plan_.order.empty() && stay_over_base(standing, plan_.paths, base_mm) &&
-        !first_obstacle(standing, plan_.order, plan_.paths))
-      return plan_;
-    return exact_disassembly(standing, base_mm, problem_.plate, [&] {
+    return renewed(plan_, standing, problem_.build_mm.head<2>(), problem_.plate, [&] {
       pace_.tick();
       return passed() >= 1 || static_cast<double>(standing.steps()) > kProofShare * most_steps_;
     });

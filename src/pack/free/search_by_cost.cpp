@@ -196,11 +196,9 @@ class CostedTray {
   }
 
   bool is_taken_apart(const std::vector<Mesh>& meshes) {
-    const Progress& progress = pace_.progress();
-    if (!plan_.order.empty() && !first_obstacle(meshes, plan_.order, plan_.paths, progress))
-      return true;
     ExactDisassembly plan =
-        exact_disassembly(meshes, problem_.build_mm.head<2>(), progress, problem_.plate);
+        renewed(plan_, StandingParts(meshes, pace_.progress()), problem_.build_mm.head<2>(),
+                problem_.plate, [this] { return is_over(); });
     if (!plan.stuck.empty()) return false;
     plan_ = std::move(plan);
     return true;

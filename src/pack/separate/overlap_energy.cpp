@@ -56,9 +56,10 @@ Push met(const Shape& one, const Pose& at_one, const Shape& other, const Pose& a
     push.steps += kStepsOfSample * ball.samples.size();
     for (const Vec3f& sample : ball.samples) {
       const Vec3f point = turn * sample + shift;
-      Vec3f gradient;
-      const float lacking = room - distances.at(point, gradient);
+      const float lacking = room - distances.at(point);
       if (!(lacking > 0)) continue;
+      Vec3f gradient;
+      distances.at(point, gradient);
       push.deepest_mm = std::max(push.deepest_mm, static_cast<double>(lacking));
       add(push, 1, lacking, gradient.cast<double>(), point.cast<double>());
     }
@@ -136,11 +137,18 @@ struct Pair {
 std::vector<Pair> close_pairs(const std::vector<const Shape*>& shapes,
                               const std::vector<Pose>& poses, const Rooms& rooms) {
   std::vector<Pair> pairs;
+  std::vector<Vec3> half;  // of the boxes, on the tray
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    for (std::size_t j = 0; j < shapes.size(); ++j)
-      if (i != j && (poses[i].translation() - poses[j].translation()).norm() <
-                        shapes[i]->radius_mm + shapes[j]->radius_mm + rooms.pair(i, j))
+    half.emplace_back(poses[i].linear().cwiseAbs() * shapes[i]->half_mm);
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    for (std::size_t j = 0; j < shapes.size(); ++j) {
+      if (i == j) continue;
+      const Vec3 away = poses[i].translation() - poses[j].translation();
+      const double room_mm = rooms.pair(i, j);
+      if ((away.cwiseAbs() - half[i] - half[j]).maxCoeff() < room_mm &&
+          away.norm() < shapes[i]->radius_mm + shapes[j]->radius_mm + room_mm)
         pairs.push_back({i, j});
+    }
   return pairs;
 }
 

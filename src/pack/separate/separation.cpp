@@ -76,8 +76,10 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
                                    Rooms& rooms) const {
   bool close = false;
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::vector<Box3> boxes;
+  for (std::size_t i = 0; i < poses.size(); ++i) boxes.push_back(shapes_[i]->surface.box(poses[i]));
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Box3 box = shapes_[i]->surface.box(poses[i]);
+    const Box3& box = boxes[i];
     double outside = std::max(-box.min().minCoeff(), (box.max() - box_mm).maxCoeff());
     if (!plate_.surely_clear(box))
       outside = std::max(outside, plate_.breach_mm(shapes_[i]->mesh, poses[i]));
@@ -86,9 +88,7 @@ bool Separation::widen_where_close(const std::vector<Pose>& poses, const Vec3& b
       close = true;
     }
     for (std::size_t j = i + 1; j < poses.size(); ++j)
-      if ((poses[i].translation() - poses[j].translation()).norm() <
-          shapes_[i]->radius_mm + shapes_[j]->radius_mm + apart_mm_)
-        pairs.emplace_back(i, j);
+      if (box.exteriorDistance(boxes[j]) < apart_mm_) pairs.emplace_back(i, j);
   }
   spend(kStepsOfDistance * pairs.size());
   std::vector<double> gaps(pairs.size());

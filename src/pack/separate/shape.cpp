@@ -169,6 +169,7 @@ Shape::Shape(const Mesh& from, double reach_mm)
       mesh(about_its_centre(from, centre)),
       volume_mm3(packmerger::volume_mm3(mesh)),
       radius_mm(radius_of(mesh)),
+      half_mm(bounding_box(mesh).sizes() / 2),
       surface(mesh),
       outside(without_chambers(mesh)),
       distances(outside, pitch_for(mesh, reach_mm), reach_mm),

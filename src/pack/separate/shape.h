@@ -25,6 +25,7 @@ struct Shape {
   Mesh mesh;
   double volume_mm3;
   double radius_mm;  // of a ball about the origin that holds the shape
+  Vec3 half_mm;      // of the surface's box
   MovableSurface surface;
   Mesh outside;  // of the mesh: without the walls of closed chambers, which nothing gets into
   DistanceGrid distances;
