@@ -225,7 +225,9 @@ simulated = {str(simulated).lower()}
         # by the history: it is tried again soon, and then its reason is another
         self.wait_for(lambda: any("is gone" in event["note"] for event in self.shown(daemon)["history"]),
                       lambda: self.shown(daemon))
-        self.assertEqual((self.shown(daemon)["state"], self.bed(daemon)), ("approved", "clear"))
+        # while it is tried again the bed is taken for a moment
+        self.wait_for(lambda: (self.shown(daemon)["state"], self.bed(daemon)) == ("approved", "clear"),
+                      lambda: self.shown(daemon))
 
         self.port.unlink()
         self.port.symlink_to(Silent(self).name)
