@@ -15,6 +15,7 @@
 #include "pack/exact/settle.h"
 #include "pack/free/free_search.h"
 #include "pack/free/search_by_cost.h"
+#include "pack/free/sinking_tray.h"
 #include "pack/maps/ways_up.h"
 #include "pack/search/refine.h"
 #include "pack/search/search.h"
@@ -33,6 +34,7 @@ constexpr int kFinestPasses = 3;
 constexpr double kCellsOfItem = 10;           // along an item on average, at least
 constexpr double kDroppingShare = 0.4;        // of the budget: for layouts of dropped parts
 constexpr double kDroppingShareOfFree = 0.1;  // where they are but where a free search begins
+constexpr std::size_t kMostSunk = 60;         // parts: the distances round more take much memory
 constexpr double kInTime = 0.97;              // of the budget: room for the last measurement
 constexpr double kAboutEqual = 1.005;         // costs: the layout of fewest parts is taken
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -194,11 +196,16 @@ class Finisher {
   Workshop finest_;
 };
 
-// Settled, where that is cheaper.
+// Settled, or sunk where support counts too and parts are few, where that is cheaper.
 Packing closer(const PackProblem& problem, Packing packing, Pace& pace) {
-  Packing close = settled(problem, packing, pace);
-  measure(problem, close);
-  return close.cost < packing.cost ? close : packing;
+  std::optional<Packing> close;
+  if (height_alone_counts(problem) || packing.parts.size() > kMostSunk)
+    close = settled(problem, packing, pace);
+  else
+    close = sunk(problem, packing, pace);
+  if (!close) return packing;
+  measure(problem, *close);
+  return close->cost < packing.cost ? *close : packing;
 }
 
 // The answer, its gaps checked on the meshes. The maps bound those, so there is nothing to repair

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "pack/free/lattice.h"
+#include "pack/lattice/lattice.h"
 
 namespace packmerger {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/random.h"
 #include "model/packing.h"
-#include "pack/free/cheapest_place.h"
+#include "pack/lattice/cheapest_place.h"
 
 namespace packmerger {
 

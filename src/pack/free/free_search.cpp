@@ -256,34 +256,28 @@ std::optional<Packing> searched_freely(const PackProblem& problem, Packing packi
   Random random(problem.seed);
   std::vector<int> order;
   for (int tray = 0; tray < static_cast<int>(packing.trays.size()); ++tray) {
-    std::vector<std::size_t> here;
-    std::vector<PlacedPart> parts;
-    for (std::size_t i = 0; i < packing.parts.size(); ++i)
-      if (packing.parts[i].tray == tray) {
-        here.push_back(i);
-        parts.push_back(packing.parts[i]);
-      }
+    TrayParts here = parts_of(packing, tray);
     const auto trays = static_cast<double>(packing.trays.size());
     const double share = pace.has_budget() ? 1 / (trays - tray) : 1 / trays;
     const std::uint64_t seed = random.bits();
-    auto shapes = shapes_of(problem, parts, pace);
+    auto shapes = shapes_of(problem, here.parts, pace);
     std::optional<FreeSearch> search;
     if (!shapes.empty())
-      search.emplace(problem, std::move(parts), std::move(shapes), share, seed, pace);
+      search.emplace(problem, std::move(here.parts), std::move(shapes), share, seed, pace);
     const bool is_lower = search && search->run();
     if (search) effort.spend(search->spent());
     if (!is_lower) {
-      for (const int part : packing.removal_order)
-        if (packing.parts[static_cast<std::size_t>(part)].tray == tray) order.push_back(part);
+      for (const int part : here.order)
+        order.push_back(static_cast<int>(here.indices[static_cast<std::size_t>(part)]));
       continue;
     }
     found = true;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      packing.parts[here[i]] = search->parts()[i];
-      packing.removal_paths[here[i]] = search->plan().paths[i];
+    for (std::size_t i = 0; i < here.indices.size(); ++i) {
+      packing.parts[here.indices[i]] = search->parts()[i];
+      packing.removal_paths[here.indices[i]] = search->plan().paths[i];
     }
     for (const int part : search->plan().order)
-      order.push_back(static_cast<int>(here[static_cast<std::size_t>(part)]));
+      order.push_back(static_cast<int>(here.indices[static_cast<std::size_t>(part)]));
   }
   if (!found) return std::nullopt;
   packing.removal_order = std::move(order);

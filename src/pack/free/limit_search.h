@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "pack/free/lattice_layout.h"
+#include "pack/lattice/lattice_layout.h"
 
 namespace packmerger {
 

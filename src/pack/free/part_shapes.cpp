@@ -14,6 +14,21 @@ constexpr double kReach_mm = 2.5;  // of the distances, beyond what parts keep a
 
 }  // namespace
 
+TrayParts parts_of(const Packing& packing, int tray) {
+  TrayParts here;
+  std::vector<int> numbers(packing.parts.size(), -1);
+  for (std::size_t i = 0; i < packing.parts.size(); ++i) {
+    if (packing.parts[i].tray != tray) continue;
+    numbers[i] = static_cast<int>(here.parts.size());
+    here.indices.push_back(i);
+    here.parts.push_back(packing.parts[i]);
+  }
+  for (const int part : packing.removal_order)
+    if (const int number = numbers[static_cast<std::size_t>(part)]; number >= 0)
+      here.order.push_back(number);
+  return here;
+}
+
 std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
                                                     const std::vector<PlacedPart>& parts,
                                                     Pace& pace) {

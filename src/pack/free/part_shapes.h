@@ -1,4 +1,4 @@
-// The shapes of a tray's parts.
+// The parts of a tray, and their shapes.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,13 @@
 #include "pack/separate/shape.h"
 
 namespace packmerger {
+
+struct TrayParts {
+  std::vector<std::size_t> indices;  // into Packing::parts
+  std::vector<PlacedPart> parts;
+  std::vector<int> order;  // of removal, into parts
+};
+TrayParts parts_of(const Packing& packing, int tray);
 
 // By part. Meshes that are the same to the last bit, as copies are, share a shape. Empty where the
 // pace's time is up before they are made.

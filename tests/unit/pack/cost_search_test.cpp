@@ -6,8 +6,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "base/parallel.h"
-#include "pack/free/cheapest_place.h"
-#include "pack/free/lattice.h"
+#include "pack/lattice/cheapest_place.h"
+#include "pack/lattice/lattice.h"
 #include "pack/maps/columns.h"
 #include "pack/maps/rotations.h"
 #include "pack/pack.h"

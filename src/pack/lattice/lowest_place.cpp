@@ -1,4 +1,4 @@
-#include "pack/free/lowest_place.h"
+#include "pack/lattice/lowest_place.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,10 +7,10 @@
 #include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pack/free/lowest_place.cpp"
+#define HWY_TARGET_INCLUDE "pack/lattice/lowest_place.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each target
 
-#include "pack/free/taken_heights-inl.h"
+#include "pack/lattice/taken_heights-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace packmerger::HWY_NAMESPACE {

@@ -1,4 +1,4 @@
-#include "pack/free/lattice.h"
+#include "pack/lattice/lattice.h"
 
 #include <algorithm>
 #include <cmath>

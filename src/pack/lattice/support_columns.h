@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pack/free/supported_part.h"
+#include "pack/lattice/supported_part.h"
 
 namespace packmerger {
 

@@ -1,4 +1,4 @@
-#include "pack/free/supported_part.h"
+#include "pack/lattice/supported_part.h"
 
 #include <algorithm>
 

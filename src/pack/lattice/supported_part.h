@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "pack/free/height_bits.h"
+#include "pack/lattice/height_bits.h"
 
 namespace packmerger {
 

@@ -1,11 +1,11 @@
-#include "pack/free/lattice_layout.h"
+#include "pack/lattice/lattice_layout.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/parallel.h"
-#include "pack/free/lattice.h"
+#include "pack/lattice/lattice.h"
 
 namespace packmerger {
 namespace {

@@ -2,7 +2,7 @@
 // positions in one instruction (Highway, chosen at run time).
 #pragma once
 
-#include "pack/free/height_bits.h"
+#include "pack/lattice/height_bits.h"
 
 namespace packmerger {
 

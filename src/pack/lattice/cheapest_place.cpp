@@ -1,4 +1,4 @@
-#include "pack/free/cheapest_place.h"
+#include "pack/lattice/cheapest_place.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include "base/simd_targets.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pack/free/cheapest_place.cpp"
+#define HWY_TARGET_INCLUDE "pack/lattice/cheapest_place.cpp"
 #include <hwy/foreach_target.h>  // includes this file once for each target
 
-#include "pack/free/taken_heights-inl.h"
+#include "pack/lattice/taken_heights-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace packmerger::HWY_NAMESPACE {

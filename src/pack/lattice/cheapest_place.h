@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "pack/free/lowest_place.h"
-#include "pack/free/support_columns.h"
+#include "pack/lattice/lowest_place.h"
+#include "pack/lattice/support_columns.h"
 
 namespace packmerger {
 

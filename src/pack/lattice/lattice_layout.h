@@ -7,7 +7,7 @@
 
 #include "base/effort.h"
 #include "model/plate.h"
-#include "pack/free/lowest_place.h"
+#include "pack/lattice/lowest_place.h"
 
 namespace packmerger {
 

@@ -1,4 +1,4 @@
-#include "pack/free/support_columns.h"
+#include "pack/lattice/support_columns.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "pack/free/height_bits.h"
+#include "pack/lattice/height_bits.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,17 +1,17 @@
 // The heights that are free for a part at eight positions at once. Included once for each target of
 // Highway, by what scans a whole tray.
-#if defined(PACKMERGER_PACK_FREE_TAKEN_HEIGHTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef PACKMERGER_PACK_FREE_TAKEN_HEIGHTS_INL_H
-#undef PACKMERGER_PACK_FREE_TAKEN_HEIGHTS_INL_H
+#if defined(PACKMERGER_PACK_LATTICE_TAKEN_HEIGHTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PACKMERGER_PACK_LATTICE_TAKEN_HEIGHTS_INL_H
+#undef PACKMERGER_PACK_LATTICE_TAKEN_HEIGHTS_INL_H
 #else
-#define PACKMERGER_PACK_FREE_TAKEN_HEIGHTS_INL_H
+#define PACKMERGER_PACK_LATTICE_TAKEN_HEIGHTS_INL_H
 #endif
 
 #include <array>
 
 #include <hwy/highway.h>
 
-#include "pack/free/height_bits.h"
+#include "pack/lattice/height_bits.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace packmerger::HWY_NAMESPACE {
