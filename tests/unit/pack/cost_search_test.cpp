@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "pack/lattice/cheapest_place.h"
-#include "pack/lattice/lattice.h"
 #include "pack/maps/columns.h"
 #include "pack/maps/rotations.h"
 #include "pack/pack.h"
@@ -35,9 +34,6 @@ struct Pile {
   explicit Pile(Random& random)
       : apart_mm(static_cast<double>(random.below(2)) * 0.8), support_angle(some_angle(random)) {
     for (int i = 0; i < 3; ++i) shapes.emplace_back(shapes::random_solid(random), kReach_mm);
-    std::vector<const Shape*> pointers;
-    for (const Shape& shape : shapes) pointers.push_back(&shape);
-    grid = lattice_for(pointers, Vec2(60, 50), apart_mm, 150);
     double z_mm = 0;
     for (const Shape& shape : shapes) {
       parts.push_back(supported_part(shape, some_rotation(random), grid, apart_mm, support_angle));
@@ -70,7 +66,7 @@ struct Pile {
   double apart_mm;
   double support_angle;
   std::vector<Shape> shapes;
-  BitGrid grid;
+  BitGrid grid{1.2, 150.0 / 62, 50, 42};
   std::vector<SupportedPart> parts;
   std::vector<BitPlace> places;
 };
