@@ -204,6 +204,7 @@ Packing closer(const PackProblem& problem, Packing packing, Pace& pace) {
   else
     close = sunk(problem, packing, pace);
   if (!close) return packing;
+  for (PlacedPart& part : close->parts) keep_inside(part, problem);
   measure(problem, *close);
   return close->cost < packing.cost ? *close : packing;
 }
