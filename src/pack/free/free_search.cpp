@@ -188,7 +188,7 @@ class FreeSearch {
   // has a way out, and its gap. stuck: the parts that have no way out.
   bool certified(std::vector<Pose> poses, std::vector<int>& stuck) {
     const double began = passed();
-    let_down(poses);
+    let_down(poses, shapes_);
     std::vector<PlacedPart> parts = parts_;
     std::vector<Mesh> placed;
     std::vector<MovableSurface> surfaces;
@@ -219,14 +219,6 @@ class FreeSearch {
       pace_.tick();
       return passed() >= 1 || static_cast<double>(standing.steps()) > kProofShare * most_steps_;
     });
-  }
-
-  // Down to the plate.
-  void let_down(std::vector<Pose>& poses) const {
-    double lowest = poses.front().translation().z();
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      lowest = std::min(lowest, shapes_[i]->surface.box(poses[i]).min().z());
-    for (Pose& pose : poses) pose.translation().z() -= lowest;
   }
 
   const PackProblem& problem_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 
 #include "base/parallel.h"
 #include "pack/exact/exact_figures.h"
@@ -65,6 +66,13 @@ Pose own_frame(const Pose& pose, const Shape& shape) {
 
 Pose part_frame(const Pose& pose, const Shape& shape) {
   return pose * Eigen::Translation3d(-shape.centre);
+}
+
+void let_down(std::vector<Pose>& poses, const std::vector<std::shared_ptr<const Shape>>& shapes) {
+  double lowest_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    lowest_mm = std::min(lowest_mm, shapes[i]->surface.box(poses[i]).min().z());
+  for (Pose& pose : poses) pose.translation().z() -= lowest_mm;
 }
 
 }  // namespace packmerger

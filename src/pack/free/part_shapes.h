@@ -27,4 +27,7 @@ std::vector<std::shared_ptr<const Shape>> shapes_of(const PackProblem& problem,
 Pose own_frame(const Pose& pose, const Shape& shape);
 Pose part_frame(const Pose& pose, const Shape& shape);
 
+// Moves all down together until one stands on the plate; poses of the shapes' frames.
+void let_down(std::vector<Pose>& poses, const std::vector<std::shared_ptr<const Shape>>& shapes);
+
 }  // namespace packmerger

@@ -107,8 +107,7 @@ bool SinkingTray::fall(std::vector<Pose>& poses, const TrayMeasure& figures, int
                    problem_.plate, is_over_);
   const Separation separation(pointers_, box.head<2>(), problem_.gap_mm, is_over_, problem_.plate);
   if (!separation.separate(poses, box.z(), kSeparationSteps)) return false;
-  const double lowest_mm = contents(poses).min().z();
-  for (Pose& pose : poses) pose.translation().z() -= lowest_mm;
+  let_down(poses, shapes_);
   return true;
 }
 

@@ -41,42 +41,42 @@ void SupportColumns::entered(const SupportedPart& part, std::size_t cell, int nu
   }
 }
 
-void SupportColumns::put(const SupportedPart& part, int number, int x, int y, double z_mm) {
+// Visits the part's cells that hold matter, and the tray's below them.
+template <typename Visit>
+void SupportColumns::over_cells(const SupportedPart& part, int x, int y, const Visit& visit) const {
   for (int j = 0; j < part.bits.depth; ++j)
     for (int i = 0; i < part.bits.width; ++i) {
       const auto cell = static_cast<std::size_t>(j * part.bits.width + i);
-      if (part.first[cell] == part.first[cell + 1]) continue;
-      Column& column = cells_[static_cast<std::size_t>((y + j) * columns_ + x + i)];
-      support_mm_ -= voids_mm(column);
-      entered(part, cell, number, static_cast<float>(z_mm), column);
-      support_mm_ += voids_mm(column);
+      if (part.first[cell] != part.first[cell + 1])
+        visit(cell, static_cast<std::size_t>((y + j) * columns_ + x + i));
     }
 }
 
+void SupportColumns::put(const SupportedPart& part, int number, int x, int y, double z_mm) {
+  over_cells(part, x, y, [&](std::size_t cell, std::size_t at) {
+    support_mm_ -= voids_mm(cells_[at]);
+    entered(part, cell, number, static_cast<float>(z_mm), cells_[at]);
+    support_mm_ += voids_mm(cells_[at]);
+  });
+}
+
 void SupportColumns::take(const SupportedPart& part, int number, int x, int y) {
-  for (int j = 0; j < part.bits.depth; ++j)
-    for (int i = 0; i < part.bits.width; ++i) {
-      const auto cell = static_cast<std::size_t>(j * part.bits.width + i);
-      if (part.first[cell] == part.first[cell + 1]) continue;
-      Column& column = cells_[static_cast<std::size_t>((y + j) * columns_ + x + i)];
-      support_mm_ -= voids_mm(column);
-      std::erase_if(column, [&](const Standing& one) { return one.number == number; });
-      support_mm_ += voids_mm(column);
-    }
+  over_cells(part, x, y, [&](std::size_t, std::size_t at) {
+    support_mm_ -= voids_mm(cells_[at]);
+    std::erase_if(cells_[at], [&](const Standing& one) { return one.number == number; });
+    support_mm_ += voids_mm(cells_[at]);
+  });
 }
 
 double SupportColumns::added_mm3(const SupportedPart& part, int x, int y, double z_mm) const {
   double sum = 0;
   Column column;
-  for (int j = 0; j < part.bits.depth; ++j)
-    for (int i = 0; i < part.bits.width; ++i) {
-      const auto cell = static_cast<std::size_t>(j * part.bits.width + i);
-      if (part.first[cell] == part.first[cell + 1]) continue;
-      column = cells_[static_cast<std::size_t>((y + j) * columns_ + x + i)];
-      sum -= voids_mm(column);
-      entered(part, cell, -1, static_cast<float>(z_mm), column);
-      sum += voids_mm(column);
-    }
+  over_cells(part, x, y, [&](std::size_t cell, std::size_t at) {
+    column = cells_[at];
+    sum -= voids_mm(column);
+    entered(part, cell, -1, static_cast<float>(z_mm), column);
+    sum += voids_mm(column);
+  });
   return sum * cell_mm2_;
 }
 

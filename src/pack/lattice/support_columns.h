@@ -38,6 +38,8 @@ class SupportColumns {
   using Column = std::vector<Standing>;  // from the lowest up
 
   static double voids_mm(const Column& column);
+  template <typename Visit>
+  void over_cells(const SupportedPart& part, int x, int y, const Visit& visit) const;
   void entered(const SupportedPart& part, std::size_t cell, int number, float z_mm,
                Column& column) const;
 

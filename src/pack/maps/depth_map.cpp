@@ -359,20 +359,7 @@ DepthMaps quarter_turned(const DepthMaps& maps, int quarters) {
 }
 
 DepthMaps united_maps(const std::vector<const DepthMaps*>& members) {
-  DepthMaps all;
-  int x1 = members.front()->x0;
-  int y1 = members.front()->y0;
-  all.x0 = x1;
-  all.y0 = y1;
-  for (const DepthMaps* member : members) {
-    all.x0 = std::min(all.x0, member->x0);
-    all.y0 = std::min(all.y0, member->y0);
-    x1 = std::max(x1, member->x0 + member->width);
-    y1 = std::max(y1, member->y0 + member->height);
-    all.box.extend(member->box);
-  }
-  all.width = x1 - all.x0;
-  all.height = y1 - all.y0;
+  DepthMaps all = frame_of(members);
   allocate(all);
   for (const DepthMaps* member : members)
     for (int row = 0; row < member->height; ++row)

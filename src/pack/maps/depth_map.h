@@ -3,6 +3,7 @@
 // members' maps without drawing anything.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +54,26 @@ struct RoofMap {
   Box3 box;                 // exact, mm
   std::vector<float> roof;  // kNothingBelow where the line misses
 };
+
+// Empty maps, or an empty roof, over the cells and the box of all members together.
+template <typename Map>
+Map frame_of(const std::vector<const Map*>& members) {
+  Map all;
+  int x1 = members.front()->x0;
+  int y1 = members.front()->y0;
+  all.x0 = x1;
+  all.y0 = y1;
+  for (const Map* member : members) {
+    all.x0 = std::min(all.x0, member->x0);
+    all.y0 = std::min(all.y0, member->y0);
+    x1 = std::max(x1, member->x0 + member->width);
+    y1 = std::max(y1, member->y0 + member->height);
+    all.box.extend(member->box);
+  }
+  all.width = x1 - all.x0;
+  all.height = y1 - all.y0;
+  return all;
+}
 
 // `roof` as draw_centre_maps() has it, in half the time: facets that face down are not drawn.
 RoofMap draw_roof(const Mesh& surface, double grid_mm);

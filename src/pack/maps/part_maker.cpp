@@ -45,20 +45,8 @@ double inside_support_mm3_of(const DepthMaps& maps, double volume_mm3, double ce
 
 // Under the upper envelope of all of them, down to the lowest point.
 double volume_under_mm3(const std::vector<const RoofMap*>& members, double cell_mm) {
-  RoofMap all;
-  int x1 = members.front()->x0;
-  int y1 = members.front()->y0;
-  all.x0 = x1;
-  all.y0 = y1;
-  for (const RoofMap* member : members) {
-    all.x0 = std::min(all.x0, member->x0);
-    all.y0 = std::min(all.y0, member->y0);
-    x1 = std::max(x1, member->x0 + member->width);
-    y1 = std::max(y1, member->y0 + member->height);
-    all.box.extend(member->box);
-  }
-  all.width = x1 - all.x0;
-  all.roof.assign(static_cast<std::size_t>(all.width) * static_cast<std::size_t>(y1 - all.y0),
+  RoofMap all = frame_of(members);
+  all.roof.assign(static_cast<std::size_t>(all.width) * static_cast<std::size_t>(all.height),
                   kNothingBelow);
   for (const RoofMap* member : members) {
     auto from = member->roof.begin();

@@ -234,4 +234,14 @@ inline void expect_valid(const PackProblem& problem, const Packing& packing,
   expect_removable(problem, packing, placed, column_step_mm);
 }
 
+// The same parts in the same poses to the last bit, and taken out alike.
+inline void expect_same(const Packing& one, const Packing& other) {
+  EXPECT_EQ(one.cost, other.cost);
+  EXPECT_EQ(one.removal_order, other.removal_order);
+  EXPECT_EQ(one.removal_paths, other.removal_paths);
+  ASSERT_EQ(one.parts.size(), other.parts.size());
+  for (std::size_t i = 0; i < one.parts.size(); ++i)
+    EXPECT_EQ(one.parts[i].pose.matrix(), other.parts[i].pose.matrix());
+}
+
 }  // namespace packmerger::check

@@ -226,10 +226,7 @@ TEST(SearchByCost, IsTheSameOnOneThreadAndOnTwo) {
   check::expect_valid(problem, two, 0.25);
   const ThreadLimit limit(1);
   const Packing one = pack(problem, {});
-  EXPECT_EQ(one.removal_order, two.removal_order);
-  EXPECT_EQ(one.removal_paths, two.removal_paths);
-  for (std::size_t i = 0; i < one.parts.size(); ++i)
-    EXPECT_EQ(one.parts[i].pose.matrix(), two.parts[i].pose.matrix());
+  check::expect_same(one, two);
 }
 
 }  // namespace

@@ -384,10 +384,7 @@ TEST(FreeSearch, IsTheSameOnOneThreadAndOnTwo) {
   const Packing two = pack(problem, {});
   const ThreadLimit limit(1);
   const Packing one = pack(problem, {});
-  EXPECT_EQ(one.removal_order, two.removal_order);
-  EXPECT_EQ(one.removal_paths, two.removal_paths);
-  for (std::size_t i = 0; i < one.parts.size(); ++i)
-    EXPECT_EQ(one.parts[i].pose.matrix(), two.parts[i].pose.matrix());
+  check::expect_same(one, two);
 }
 
 // A search that always finds something better ends by the work that it did, which grows with the
